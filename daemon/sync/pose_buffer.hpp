@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "daemon/geometry/pose.hpp"
+
+namespace handeye {
+
+/// The hand as the tracker saw it once.
+struct HandSample {
+  std::int64_t timestamp_ns{0};            ///< host CLOCK_MONOTONIC, after the clock model
+  bool tracked{false};                     ///< false: hidden; the pose is meaningless
+  Pose room_from_hand{Pose::Identity()};
+};
+
+/// Outcome of a look-up: ordinary results, not errors.
+enum class LookupStatus { kOk, kEmpty, kTooOld, kTooNew, kGap, kHidden };
+
+struct HandLookup {
+  LookupStatus status{LookupStatus::kEmpty};
+  Pose room_from_hand{Pose::Identity()};   ///< only for kOk
+  double fraction{0};                      ///< 0..1 between the two neighbours
+  /// Angular velocity in the hand frame [rad/s] and velocity of the hand's origin in the room [mm/s].
+  Eigen::Vector3d angular_velocity{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};
+};
+
+struct PoseBufferOptions {
+  std::size_t capacity{8192};              ///< samples; the oldest go first (136 s at 60 Hz)
+  std::int64_t max_gap_ns{100'000'000};    ///< no interpolation across a longer gap
+};
+
+/// Ring of hand samples in time order; interpolates on SE(3) between neighbours, never across a gap
+/// or an untracked sample (math.md section 9). Not synchronised: one owner.
+class PoseBuffer {
+ public:
+  explicit PoseBuffer(const PoseBufferOptions& options = {});
+
+  /// Samples that are not newer than the last one are dropped and counted.
+  void push(const HandSample& sample);
+  HandLookup lookup(std::int64_t timestamp_ns) const;
+  void clear();
+
+  std::size_t size() const;
+  const HandSample& at(std::size_t index) const;   ///< 0 is the oldest
+  std::uint64_t out_of_order() const { return out_of_order_; }
+
+ private:
+  PoseBufferOptions options_;
+  std::uint64_t out_of_order_{0};
+};
+
+}  // namespace handeye

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace handeye {
+
+/// One feature in one image.
+struct Observation {
+  std::int64_t feature_id{0};   ///< unique for the tracker's life; a lost feature never returns
+  Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};   ///< px, pixel centres at integers
+};
+
+/// What was tracked into one image, ordered by feature_id.
+struct TrackedFrame {
+  std::int64_t timestamp_ns{0};   ///< camera stamp of the image
+  std::int64_t index{0};          ///< counts the frames given to the tracker, from 0
+  std::vector<Observation> observations;
+};
+
+struct TrackerOptions {
+  int max_features{300};
+  int window_px{21};                   ///< side of the compared patch
+  int pyramid_levels{4};
+  double min_distance_px{10};          ///< between features when new ones are sought
+  double quality{0.01};                ///< weakest corner accepted, of the strongest in the image
+  double max_forward_backward_px{0.5}; ///< tracked back it must land this near to where it began
+};
+
+/// Follows features from frame to frame. One thread; frames in order of time.
+class FeatureTracker {
+ public:
+  FeatureTracker() = default;
+  FeatureTracker(const FeatureTracker&) = delete;
+  FeatureTracker& operator=(const FeatureTracker&) = delete;
+  virtual ~FeatureTracker() = default;
+
+  /// Tracks into the next image (CV_8UC1, always one size) and tops up with new features.
+  /// `mask`: CV_8UC1 of the image's size, 255 = usable, or empty for the whole image.
+  virtual void track(const cv::Mat& grey, const cv::Mat& mask, std::int64_t timestamp_ns,
+                     TrackedFrame& tracked) = 0;
+};
+
+/// OpenCV's pyramidal Lucas-Kanade with a forward-backward check and Shi-Tomasi corners.
+std::unique_ptr<FeatureTracker> make_lucas_kanade_tracker(const TrackerOptions& options = {});
+
+}  // namespace handeye

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/geometry/camera_model.hpp"
+#include "daemon/geometry/pose.hpp"
+#include "daemon/handeye/types.hpp"
+
+namespace handeye {
+
+enum class Verdict { kAccepted, kRefused, kCancelled };
+
+/// Why a calibration was refused; the documented word of each is reason_word().
+enum class Reason {
+  kNone,
+  kInsufficientRotation,
+  kInsufficientTranslation,
+  kNoMotion,
+  kSingleAxis,
+  kFixedPoint,
+  kNoParallax,
+  kTooFewFeatures,
+  kTrackerLost,
+  kCameraLost,
+  kClockUnstable,
+  kUncertain,
+  kCancelled,
+};
+
+/// "single_axis", ...; empty for kNone.
+std::string_view reason_word(Reason reason);
+
+/// What the person holding the scope can do about it; one sentence. Empty for kNone.
+std::string_view reason_advice(Reason reason);
+
+/// How good an answer has to be to be accepted. Sigma: square root of the trace of the block.
+struct WantedSigma {
+  double rotation_deg{0.3};
+  double translation_mm{1.5};
+};
+
+struct MethodResult {
+  std::string name;
+  std::optional<HandEyeSolution> solution;   ///< nothing: the method found none
+  Residuals residuals;
+  double time_ms{0};
+};
+
+/// Everything a calibration says; the fields of the result JSON and of result_t.
+struct CalibrationResult {
+  std::int64_t request_id{0};
+  int body_id{0};
+  Verdict verdict{Verdict::kRefused};
+  Reason reason{Reason::kNone};
+  std::string advice;
+  WantedSigma wanted;
+
+  bool has_estimate{false};                  ///< false: the block below is meaningless
+  HandEyeSolution solution;
+  Matrix6d covariance{Matrix6d::Zero()};     ///< of (w [rad], dt [mm]): R = Exp(w) R_est, t = t_est + dt
+  double sigma_rotation_deg{0};
+  double sigma_translation_mm{0};
+  std::optional<double> time_offset_s;       ///< add to a tracker stamp to get the camera's
+  std::optional<double> time_offset_sigma_s;
+
+  CameraModel camera;
+  std::string camera_source{"given"};        ///< given, refined, estimated
+  Residuals residuals;
+  double reprojection_px{0};
+  std::vector<MethodResult> methods;
+
+  struct Frames {
+    std::int64_t received{0}, used{0}, keyframes{0}, dropped{0};
+  } frames;
+  struct Features {
+    double tracked_mean{0};
+    std::int64_t points{0};
+  } features;
+  struct Timings {
+    double tracking{0}, reconstruction{0}, handeye{0}, total{0};
+  } timings_ms;
+};
+
+}  // namespace handeye

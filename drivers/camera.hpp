@@ -12,10 +12,10 @@ namespace handeye {
 
 /// One camera image. Reused from grab to grab: `grey` keeps its memory when size and type stay.
 struct Frame {
-  std::int64_t timestamp_ns{0};   ///< mid-exposure as the driver knows it, host CLOCK_MONOTONIC
-  std::int64_t arrival_ns{0};     ///< when it reached this process, host CLOCK_MONOTONIC
-  std::uint32_t sequence{0};      ///< the device's own count; wraps; a gap is a drop
-  cv::Mat grey;                   ///< CV_8UC1, full resolution
+  std::int64_t timestamp_ns{0};  ///< mid-exposure as the driver knows it, host CLOCK_MONOTONIC
+  std::int64_t arrival_ns{0};    ///< when it reached this process, host CLOCK_MONOTONIC
+  std::uint32_t sequence{0};     ///< the device's own count; wraps; a gap is a drop
+  cv::Mat grey;                  ///< CV_8UC1, full resolution
 };
 
 enum class GrabStatus {

@@ -2,16 +2,16 @@
 #include "protocol/bus.hpp"
 
 #include <arpa/inet.h>
+#include <cerrno>
+#include <cstdlib>
+#include <limits>
 #include <netinet/in.h>
+#include <optional>
 #include <poll.h>
+#include <random>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <optional>
-#include <random>
 
 #include "protocol/exit_codes.hpp"
 
@@ -65,9 +65,13 @@ void require_multicast_route(const sockaddr_in& group) {
 
 }  // namespace
 
-std::int64_t realtime_us() { return clock_ns(CLOCK_REALTIME) / 1000; }
+std::int64_t realtime_us() {
+  return clock_ns(CLOCK_REALTIME) / 1000;
+}
 
-std::int64_t monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
+std::int64_t monotonic_ns() {
+  return clock_ns(CLOCK_MONOTONIC);
+}
 
 std::int64_t random_id() {
   std::random_device device;
@@ -92,11 +96,12 @@ void Bus::subscribe_raw(const std::string& channel, RawHandler handler) {
                           RawHandler* raw_handler) {
     (*raw_handler)(buffer->data, buffer->data_size);
   };
-  lcm::Subscription* subscription = lcm_->subscribeFunction<RawHandler*>(
-      channel, deliver, handlers_.back().get());
+  lcm::Subscription* subscription =
+      lcm_->subscribeFunction<RawHandler*>(channel, deliver, handlers_.back().get());
   if (subscription == nullptr) {
-    throw InputError("LCM cannot receive on channel " + channel +
-                     ": its self-test heard nothing; does a firewall block multicast on this host?");
+    throw InputError(
+        "LCM cannot receive on channel " + channel +
+        ": its self-test heard nothing; does a firewall block multicast on this host?");
   }
   // A burst of large frames must not push out a request: LCM drops the newest when full.
   subscription->setQueueCapacity(256);
@@ -108,6 +113,8 @@ bool Bus::handle(std::chrono::milliseconds timeout) {
   return lcm_->handle() == 0;
 }
 
-int Bus::file_descriptor() const { return lcm_->getFileno(); }
+int Bus::file_descriptor() const {
+  return lcm_->getFileno();
+}
 
 }  // namespace handeye

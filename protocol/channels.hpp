@@ -9,7 +9,8 @@ namespace handeye {
 /// Default prefix of every channel; several rooms on one network use a prefix each.
 inline constexpr std::string_view kDefaultChannelPrefix = "HANDEYE_";
 
-/// Default LCM provider: UDP multicast that stays on this machine (ttl=0), with room for camera frames.
+/// Default LCM provider: UDP multicast that stays on this machine (ttl=0), with room for camera
+/// frames.
 inline constexpr std::string_view kDefaultLcmProvider =
     "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
@@ -35,8 +36,8 @@ struct Channels {
   std::string datagram;
 };
 
-/// LCM reads subscriptions as regular expressions and limits a channel to 63 characters, so a prefix
-/// is letters, digits, '_' and '-', at most 40 of them.
+/// LCM reads subscriptions as regular expressions and limits a channel to 63 characters, so a
+/// prefix is letters, digits, '_' and '-', at most 40 of them.
 constexpr bool is_valid_channel_prefix(std::string_view prefix) {
   if (prefix.size() > 40) return false;
   for (const char c : prefix) {

@@ -12,10 +12,10 @@ namespace handeye {
 /// A pinhole camera with OpenCV's distortion, in OpenCV's order and signs (it distorts normalised
 /// coordinates). Eye frame: x right, y down, z forward. Pixel centres at integers.
 struct CameraModel {
-  int width{0};   ///< px
-  int height{0};  ///< px
-  double fx{0}, fy{0}, cx{0}, cy{0};    ///< px
-  std::array<double, 5> distortion{};   ///< k1, k2, p1, p2, k3
+  int width{0};                        ///< px
+  int height{0};                       ///< px
+  double fx{0}, fy{0}, cx{0}, cy{0};   ///< px
+  std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3
 
   /// Nothing when usable, else what is wrong, in words ("fx must be a positive number").
   std::optional<std::string> problem() const;

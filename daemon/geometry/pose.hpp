@@ -6,14 +6,19 @@
 namespace handeye {
 
 /// A rigid transformation, named a_from_b: maps coordinates in frame b to frame a.
-/// Chains read left to right: a_from_c = a_from_b * b_from_c. Translation in mm unless named otherwise.
+/// Chains read left to right: a_from_c = a_from_b * b_from_c. Translation in mm unless named
+/// otherwise.
 using Pose = Eigen::Isometry3d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 inline constexpr double kPi = 3.14159265358979323846;
-constexpr double deg_from_rad(double angle_rad) { return angle_rad * (180.0 / kPi); }
-constexpr double rad_from_deg(double angle_deg) { return angle_deg * (kPi / 180.0); }
+constexpr double deg_from_rad(double angle_rad) {
+  return angle_rad * (180.0 / kPi);
+}
+constexpr double rad_from_deg(double angle_deg) {
+  return angle_deg * (kPi / 180.0);
+}
 
 /// Builds a pose; the quaternion (any norm but 0) is normalised.
 Pose make_pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation);

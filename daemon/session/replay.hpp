@@ -19,8 +19,8 @@ struct ReplayOptions {
   std::function<void(std::int64_t frames_done)> progress;
 };
 
-/// The daemon's own pipeline on a recording, as fast as it goes; the same answer every time, timings
-/// aside. Throws InputError for files that cannot be used.
+/// The daemon's own pipeline on a recording, as fast as it goes; the same answer every time,
+/// timings aside. Throws InputError for files that cannot be used.
 CalibrationResult replay(const ReplayOptions& options);
 
 }  // namespace handeye

@@ -45,7 +45,7 @@ struct WantedSigma {
 
 struct MethodResult {
   std::string name;
-  std::optional<HandEyeSolution> solution;   ///< nothing: the method found none
+  std::optional<HandEyeSolution> solution;  ///< nothing: the method found none
   Residuals residuals;
   double time_ms{0};
 };
@@ -59,16 +59,17 @@ struct CalibrationResult {
   std::string advice;
   WantedSigma wanted;
 
-  bool has_estimate{false};                  ///< false: the block below is meaningless
+  bool has_estimate{false};  ///< false: the block below is meaningless
   HandEyeSolution solution;
-  Matrix6d covariance{Matrix6d::Zero()};     ///< of (w [rad], dt [mm]): R = Exp(w) R_est, t = t_est + dt
+  Matrix6d covariance{
+      Matrix6d::Zero()};  ///< of (w [rad], dt [mm]): R = Exp(w) R_est, t = t_est + dt
   double sigma_rotation_deg{0};
   double sigma_translation_mm{0};
-  std::optional<double> time_offset_s;       ///< add to a tracker stamp to get the camera's
+  std::optional<double> time_offset_s;  ///< add to a tracker stamp to get the camera's
   std::optional<double> time_offset_sigma_s;
 
   CameraModel camera;
-  std::string camera_source{"given"};        ///< given, refined, estimated
+  std::string camera_source{"given"};  ///< given, refined, estimated
   Residuals residuals;
   double reprojection_px{0};
   std::vector<MethodResult> methods;

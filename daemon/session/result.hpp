@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/geometry/camera_model.hpp"
@@ -33,6 +34,9 @@ enum class Reason {
 
 /// "single_axis", ...; empty for kNone.
 std::string_view reason_word(Reason reason);
+
+/// Inverse of reason_word; a word this version does not know becomes kUncertain.
+Reason reason_from_word(std::string_view word);
 
 /// What the person holding the scope can do about it; one sentence. Empty for kNone.
 std::string_view reason_advice(Reason reason);

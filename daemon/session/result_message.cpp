@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/result_message.hpp"
+
+#include <algorithm>
+
+namespace handeye {
+namespace {
+
+// What result_t says where there is nothing to say.
+constexpr double kNoTimeOffset = 0;
+constexpr double kNoTimeOffsetSigma = -1;
+
+void write_pose(const Pose& pose, double (&q_wxyz)[4], double (&t_mm)[3]) {
+  Eigen::Quaterniond q(pose.linear());
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  q_wxyz[0] = q.w();
+  q_wxyz[1] = q.x();
+  q_wxyz[2] = q.y();
+  q_wxyz[3] = q.z();
+  Eigen::Map<Eigen::Vector3d>(t_mm) = pose.translation();
+}
+
+Pose read_pose(const double (&q_wxyz)[4], const double (&t_mm)[3]) {
+  return make_pose({q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]},
+                   Eigen::Map<const Eigen::Vector3d>(t_mm));
+}
+
+method_result_t method_message(const MethodResult& method) {
+  method_result_t message{};
+  message.name = method.name;
+  message.solved = method.solution.has_value();
+  message.time_ms = method.time_ms;
+  if (!method.solution) return message;
+  write_pose(method.solution->hand_from_eye, message.q_wxyz, message.t_mm);
+  message.scale_units_per_mm = method.solution->scale_units_per_mm;
+  message.residual_rotation_deg = method.residuals.rotation_deg;
+  message.residual_rotation_percent = method.residuals.rotation_percent;
+  message.residual_translation_percent = method.residuals.translation_percent;
+  message.residual_translation_norm_percent = method.residuals.translation_norm_percent;
+  return message;
+}
+
+MethodResult method_from_message(const method_result_t& message) {
+  MethodResult method;
+  method.name = message.name;
+  method.time_ms = message.time_ms;
+  if (message.solved) {
+    method.solution =
+        HandEyeSolution{read_pose(message.q_wxyz, message.t_mm), message.scale_units_per_mm};
+    method.residuals = {message.residual_rotation_deg, message.residual_rotation_percent,
+                        message.residual_translation_percent,
+                        message.residual_translation_norm_percent};
+  }
+  return method;
+}
+
+void write_camera(const CalibrationResult& result, result_t& message) {
+  message.width = result.camera.width;
+  message.height = result.camera.height;
+  message.fx = result.camera.fx;
+  message.fy = result.camera.fy;
+  message.cx = result.camera.cx;
+  message.cy = result.camera.cy;
+  std::ranges::copy(result.camera.distortion, message.distortion);
+  message.camera_source = result.camera_source;
+}
+
+void read_camera(const result_t& message, CalibrationResult& result) {
+  result.camera.width = message.width;
+  result.camera.height = message.height;
+  result.camera.fx = message.fx;
+  result.camera.fy = message.fy;
+  result.camera.cx = message.cx;
+  result.camera.cy = message.cy;
+  std::ranges::copy(message.distortion, result.camera.distortion.begin());
+  result.camera_source = message.camera_source;
+}
+
+void write_figures(const CalibrationResult& result, result_t& message) {
+  message.residual_rotation_deg = result.residuals.rotation_deg;
+  message.residual_rotation_percent = result.residuals.rotation_percent;
+  message.residual_translation_percent = result.residuals.translation_percent;
+  message.residual_translation_norm_percent = result.residuals.translation_norm_percent;
+  message.reprojection_px = result.reprojection_px;
+  message.frames_received = result.frames.received;
+  message.frames_used = result.frames.used;
+  message.frames_keyframes = result.frames.keyframes;
+  message.frames_dropped = result.frames.dropped;
+  message.features_tracked_mean = result.features.tracked_mean;
+  message.points = result.features.points;
+  message.time_tracking_ms = result.timings_ms.tracking;
+  message.time_reconstruction_ms = result.timings_ms.reconstruction;
+  message.time_handeye_ms = result.timings_ms.handeye;
+  message.time_total_ms = result.timings_ms.total;
+}
+
+void read_figures(const result_t& message, CalibrationResult& result) {
+  result.residuals = {message.residual_rotation_deg, message.residual_rotation_percent,
+                      message.residual_translation_percent,
+                      message.residual_translation_norm_percent};
+  result.reprojection_px = message.reprojection_px;
+  result.frames = {message.frames_received, message.frames_used, message.frames_keyframes,
+                   message.frames_dropped};
+  result.features = {message.features_tracked_mean, message.points};
+  result.timings_ms = {message.time_tracking_ms, message.time_reconstruction_ms,
+                       message.time_handeye_ms, message.time_total_ms};
+}
+
+}  // namespace
+
+result_t to_message(const CalibrationResult& result) {
+  result_t message{};
+  message.request_id = result.request_id;
+  message.verdict = result.verdict == Verdict::kAccepted    ? result_t::ACCEPTED
+                    : result.verdict == Verdict::kCancelled ? result_t::CANCELLED
+                                                            : result_t::REFUSED;
+  message.reason = reason_word(result.reason);
+  message.advice = result.advice;
+  message.has_estimate = result.has_estimate;
+  message.body_id = result.body_id;
+  if (result.has_estimate) {
+    write_pose(result.solution.hand_from_eye, message.q_wxyz, message.t_mm);
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance) =
+        result.covariance;
+    message.sigma_rotation_deg = result.sigma_rotation_deg;
+    message.sigma_translation_mm = result.sigma_translation_mm;
+    message.scale_units_per_mm = result.solution.scale_units_per_mm;
+  }
+  message.wanted_sigma_rotation_deg = result.wanted.rotation_deg;
+  message.wanted_sigma_translation_mm = result.wanted.translation_mm;
+  message.time_offset_s = result.time_offset_s.value_or(kNoTimeOffset);
+  message.time_offset_sigma_s = result.time_offset_s
+                                    ? result.time_offset_sigma_s.value_or(kNoTimeOffsetSigma)
+                                    : kNoTimeOffsetSigma;
+  write_camera(result, message);
+  write_figures(result, message);
+  for (const MethodResult& method : result.methods) {
+    message.methods.push_back(method_message(method));
+  }
+  message.num_methods = static_cast<std::int32_t>(message.methods.size());
+  return message;
+}
+
+CalibrationResult from_message(const result_t& message) {
+  CalibrationResult result;
+  result.request_id = message.request_id;
+  result.body_id = message.body_id;
+  result.verdict = message.verdict == result_t::ACCEPTED    ? Verdict::kAccepted
+                   : message.verdict == result_t::CANCELLED ? Verdict::kCancelled
+                                                            : Verdict::kRefused;
+  result.reason = reason_from_word(message.reason);
+  result.advice = message.advice;
+  result.wanted = {message.wanted_sigma_rotation_deg, message.wanted_sigma_translation_mm};
+  result.has_estimate = message.has_estimate != 0;
+  if (result.has_estimate) {
+    result.solution = {read_pose(message.q_wxyz, message.t_mm), message.scale_units_per_mm};
+    result.covariance =
+        Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance);
+    result.sigma_rotation_deg = message.sigma_rotation_deg;
+    result.sigma_translation_mm = message.sigma_translation_mm;
+  }
+  if (message.time_offset_sigma_s >= 0) {
+    result.time_offset_s = message.time_offset_s;
+    result.time_offset_sigma_s = message.time_offset_sigma_s;
+  }
+  read_camera(message, result);
+  read_figures(message, result);
+  for (const method_result_t& method : message.methods) {
+    result.methods.push_back(method_from_message(method));
+  }
+  return result;
+}
+
+}  // namespace handeye

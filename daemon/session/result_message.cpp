@@ -17,12 +17,30 @@ void write_pose(const Pose& pose, double (&q_wxyz)[4], double (&t_mm)[3]) {
   q_wxyz[1] = q.x();
   q_wxyz[2] = q.y();
   q_wxyz[3] = q.z();
-  Eigen::Map<Eigen::Vector3d>(t_mm) = pose.translation();
+  for (int axis = 0; axis < 3; ++axis) t_mm[axis] = pose.translation()(axis);
 }
 
 Pose read_pose(const double (&q_wxyz)[4], const double (&t_mm)[3]) {
   return make_pose({q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]},
                    Eigen::Map<const Eigen::Vector3d>(t_mm));
+}
+
+std::int32_t verdict_code(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return result_t::ACCEPTED;
+    case Verdict::kRefused:
+      return result_t::REFUSED;
+    case Verdict::kCancelled:
+      return result_t::CANCELLED;
+  }
+  return result_t::REFUSED;
+}
+
+Verdict verdict_from_code(std::int32_t code) {
+  if (code == result_t::ACCEPTED) return Verdict::kAccepted;
+  if (code == result_t::CANCELLED) return Verdict::kCancelled;
+  return Verdict::kRefused;
 }
 
 method_result_t method_message(const MethodResult& method) {
@@ -111,17 +129,15 @@ void read_figures(const result_t& message, CalibrationResult& result) {
 result_t to_message(const CalibrationResult& result) {
   result_t message{};
   message.request_id = result.request_id;
-  message.verdict = result.verdict == Verdict::kAccepted    ? result_t::ACCEPTED
-                    : result.verdict == Verdict::kCancelled ? result_t::CANCELLED
-                                                            : result_t::REFUSED;
+  message.verdict = verdict_code(result.verdict);
   message.reason = reason_word(result.reason);
   message.advice = result.advice;
   message.has_estimate = result.has_estimate;
   message.body_id = result.body_id;
   if (result.has_estimate) {
     write_pose(result.solution.hand_from_eye, message.q_wxyz, message.t_mm);
-    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance) =
-        result.covariance;
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(message.covariance);
+    covariance = result.covariance;
     message.sigma_rotation_deg = result.sigma_rotation_deg;
     message.sigma_translation_mm = result.sigma_translation_mm;
     message.scale_units_per_mm = result.solution.scale_units_per_mm;
@@ -145,9 +161,7 @@ CalibrationResult from_message(const result_t& message) {
   CalibrationResult result;
   result.request_id = message.request_id;
   result.body_id = message.body_id;
-  result.verdict = message.verdict == result_t::ACCEPTED    ? Verdict::kAccepted
-                   : message.verdict == result_t::CANCELLED ? Verdict::kCancelled
-                                                            : Verdict::kRefused;
+  result.verdict = verdict_from_code(message.verdict);
   result.reason = reason_from_word(message.reason);
   result.advice = message.advice;
   result.wanted = {message.wanted_sigma_rotation_deg, message.wanted_sigma_translation_mm};

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "daemon/sync/clock_model.hpp"
+#include "daemon/sync/pose_buffer.hpp"
+#include "drivers/datagram.hpp"
+#include "drivers/dtrack/parser.hpp"
+
+namespace handeye {
+
+/// From the tracker's datagrams to samples of the hand on the host's clock: parser, then clock model.
+/// The same in the live daemon and in a replay. One thread.
+class HandStream {
+ public:
+  /// `body_id`: the body on the scope, the wire's number; -1: the first body that is seen tracked.
+  explicit HandStream(int body_id) : body_id_(body_id) {}
+
+  /// Nothing when the datagram was rejected. A body that is absent is hidden: `tracked` is false.
+  /// Without a device time in the datagram (no ts, no ts2) the arrival stands for it.
+  std::optional<HandSample> take(const Datagram& datagram);
+
+  /// What the last datagram said; empty after a rejected one.
+  const dtrack::Frame& frame() const { return frame_; }
+  const dtrack::ParseCounters& counters() const { return parser_.counters(); }
+  const ClockModel& clock() const { return clock_; }
+  /// -1 as long as no body has been seen.
+  int body_id() const { return body_id_; }
+  void set_body_id(int body_id) { body_id_ = body_id; }
+
+ private:
+  enum class DeviceClock { kUnknown, kNone, kSecondsOfDay, kUnixTime };
+
+  std::int64_t host_time_ns(std::int64_t arrival_ns);
+
+  int body_id_;
+  dtrack::Parser parser_;
+  dtrack::Frame frame_;
+  ClockModel clock_;
+  DeviceClock device_clock_{DeviceClock::kUnknown};
+};
+
+}  // namespace handeye

@@ -12,28 +12,34 @@ namespace handeye {
 
 /// The eye at one frame, as reconstructed.
 struct EyeSample {
-  std::int64_t timestamp_ns{0};            ///< camera stamp
-  Pose eye_from_scene{Pose::Identity()};   ///< translation in scene units
+  std::int64_t timestamp_ns{0};           ///< camera stamp
+  Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units
 };
 
 struct TimeOffsetOptions {
-  double search_s{0.5};                    ///< offsets of -search_s..+search_s are tried
+  double search_s{0.5};  ///< offsets of -search_s..+search_s are tried
   double grid_s{0.005};
-  double min_angular_speed_rad_s{0.05};    ///< rms; below it there is nothing to correlate
-  double min_peak{0.7};                    ///< correlation coefficient at the peak
-  double ambiguity{0.98};                  ///< second peak / first peak at or above it: ambiguous
+  double interval_s{0.12};     ///< shortest time over which a speed is taken; evens out noise
+  double max_interval_s{0.5};  ///< longer pauses of the camera are left out
+  double min_angular_speed_rad_s{0.05};  ///< rms; below it there is nothing to correlate
+  double min_peak{0.7};                  ///< correlation coefficient at the peak
+  double ambiguity{0.98};                ///< second peak / first peak at or above it: ambiguous
 };
 
 struct TimeOffset {
-  double time_offset_s{0};   ///< add to a tracker time stamp to get the camera's of the same instant
+  double time_offset_s{0};  ///< add to a tracker time stamp to get the camera's of the same instant
   double sigma_s{0};
-  double peak{0};            ///< correlation coefficient at the peak
-  double second_peak{0};     ///< of the next local maximum; near `peak`: periodic motion
+  double peak{0};         ///< correlation coefficient at the peak
+  double second_peak{0};  ///< of the next local maximum; near `peak`: periodic motion
 };
 
-/// Time offset by correlating the magnitudes of the angular velocities of hand and eye, which are the
-/// same whatever hand_from_eye is (math.md section 9); sub-sample peak. Nothing when the rotation is
-/// too small, the peak too low or ambiguous.
+/// Time offset by correlating the magnitudes of the angular velocities of hand and eye, which are
+/// the same whatever hand_from_eye is (math.md section 9); sub-sample peak. Both speeds are taken
+/// over the same intervals, the hand's shifted, so that smoothing favours neither side. Nothing
+/// when the rotation is too small, the peak too low, ambiguous or at the end of the search.
+///
+/// Example: the tracker's stamps read 20 ms less than the camera's for the same instant, so a
+/// camera stamp t belongs to the hand pose stamped t - 0.020 s: time_offset_s is +0.020.
 std::optional<TimeOffset> correlate_angular_speed(const PoseBuffer& hand,
                                                   std::span<const EyeSample> eye,
                                                   const TimeOffsetOptions& options = {});

@@ -28,12 +28,17 @@ std::int64_t ClockModel::observe(double device_s, std::int64_t arrival_ns) {
   const double device = unwrapped(device_s, arrival_ns) - origin_device_s_;
   const double arrival = seconds_from_ns(arrival_ns - origin_ns_);
   const Point point{device, arrival - device};
-  if (std::abs(point.lateness_s - line_.at(device)) > options_.jump_s) {
+  if (std::abs(point.lateness_s - line_.at(device)) > believable_s(device)) {
     if (!confirms_jump(point)) {
       return std::min(origin_ns_ + ns_from_seconds(device + line_.at(device)), arrival_ns);
     }
     ++restarts_;
     start(device_s, arrival_ns);
+    return arrival_ns;
+  }
+
+  if (device - (last_device_s_ - origin_device_s_) > options_.window_s) {
+    start(device_s, arrival_ns);  // nothing of the window is left after such a pause
     return arrival_ns;
   }
 
@@ -82,22 +87,28 @@ bool ClockModel::confirms_jump(const Point& suspect) {
   return ++suspects_ >= options_.jump_confirmations;
 }
 
-/// Keeps the point if it is the lowest of its slice; true when the envelope may have changed.
+/// How far from the mapping a stamp may lie: a jump's size, and after a pause what drift explains.
+double ClockModel::believable_s(double device_s) const {
+  const double pause_s = std::abs(device_s - (last_device_s_ - origin_device_s_));
+  return options_.jump_s + 2.0 * options_.max_drift * pause_s;
+}
+
+/// Files the point under its slice; true when the envelope may have changed.
 bool ClockModel::insert(const Point& point) {
   const double width_s = options_.window_s / static_cast<double>(kSlices);
   const auto slice = static_cast<std::int64_t>(std::floor(point.device_s / width_s));
   bool changed = false;
-  while (count_ > 0 && lowest_[first_].device_s < point.device_s - options_.window_s) {
+  while (count_ > 0 && slices_[first_].lowest.device_s < point.device_s - options_.window_s) {
     first_ = (first_ + 1) % kSlices;
     --count_;
     changed = true;
   }
   if (count_ > 0 && slice <= newest_slice_) {
-    Point& lowest = lowest_[(first_ + count_ - 1) % kSlices];
+    auto& [lowest, observations] = slices_[(first_ + count_ - 1) % kSlices];
+    observations += 1;
     const double expected = lowest.lateness_s + line_.slope * (point.device_s - lowest.device_s);
-    if (point.lateness_s >= expected) return changed;
-    // A datagram overtaken by its successor keeps the order of the points.
-    if (point.device_s < lowest.device_s) return changed;
+    // A datagram overtaken by its successor must not upset the order of the points.
+    if (point.lateness_s >= expected || point.device_s < lowest.device_s) return changed;
     lowest = point;
     return true;
   }
@@ -105,7 +116,7 @@ bool ClockModel::insert(const Point& point) {
     first_ = (first_ + 1) % kSlices;
     --count_;
   }
-  lowest_[(first_ + count_) % kSlices] = point;
+  slices_[(first_ + count_) % kSlices] = {point, 1};
   ++count_;
   newest_slice_ = slice;
   return true;
@@ -115,9 +126,12 @@ void ClockModel::fit() {
   std::array<Point, kSlices> hull;  // lower convex hull, left to right (Andrew's monotone chain)
   std::size_t size = 0;
   double mean_device = 0;
+  double observations = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    const Point& point = lowest_[(first_ + i) % kSlices];
-    mean_device += point.device_s / static_cast<double>(count_);
+    const Slice& slice = slices_[(first_ + i) % kSlices];
+    const Point& point = slice.lowest;
+    observations += slice.observations;
+    mean_device += (point.device_s - mean_device) * slice.observations / observations;
     const auto above_chord = [&](const Point& a, const Point& b) {
       return (b.lateness_s - a.lateness_s) * (point.device_s - a.device_s) >=
              (point.lateness_s - a.lateness_s) * (b.device_s - a.device_s);

@@ -57,11 +57,17 @@ class ClockModel {
     double slope{0};
     double at(double device) const { return lateness_s + slope * (device - device_s); }
   };
+  /// A slice of the window: its lowest point and how many observations it saw.
+  struct Slice {
+    Point lowest;
+    double observations{0};
+  };
   static constexpr std::size_t kSlices = 80;
 
   double unwrapped(double device_s, std::int64_t arrival_ns) const;
   void start(double device_s, std::int64_t arrival_ns);
   bool confirms_jump(const Point& suspect);
+  double believable_s(double device_s) const;
   bool insert(const Point& point);
   void fit();
   void settle(double device_s);
@@ -73,7 +79,7 @@ class ClockModel {
   double last_device_s_{0};    ///< unwrapped, of the last believed observation
   std::int64_t last_arrival_ns_{0};
 
-  std::array<Point, kSlices> lowest_{};  ///< ring, one per slice that saw an observation, in order
+  std::array<Slice, kSlices> slices_{};  ///< ring of those that saw an observation, in order
   std::size_t first_{0};
   std::size_t count_{0};
   std::int64_t newest_slice_{0};

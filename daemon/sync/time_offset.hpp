@@ -19,7 +19,7 @@ struct EyeSample {
 struct TimeOffsetOptions {
   double search_s{0.5};  ///< offsets of -search_s..+search_s are tried
   double grid_s{0.005};
-  double interval_s{0.12};     ///< shortest time over which a speed is taken; evens out noise
+  double interval_s{0.2};      ///< shortest time over which a speed is taken; evens out noise
   double max_interval_s{0.5};  ///< longer pauses of the camera are left out
   double min_angular_speed_rad_s{0.05};  ///< rms; below it there is nothing to correlate
   double min_peak{0.7};                  ///< correlation coefficient at the peak

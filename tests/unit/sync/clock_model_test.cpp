@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/sync/clock_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace handeye {
+namespace {
+
+constexpr double kDay_s = 86400.0;
+constexpr double kLatency_s = 0.004;
+
+/// A device whose clock runs at (1 + drift) of the host's, and a network that delays each datagram
+/// by a constant and an exponential jitter.
+class Device {
+ public:
+  explicit Device(std::uint32_t seed, double jitter_s = 1e-3)
+      : generator_(seed), jitter_s_(jitter_s) {}
+
+  double start_of_day_s{40000.0};
+  double drift{0};
+  double jump_s{0};        ///< added to the device's clock
+  double extra_late_s{0};  ///< of the next datagram only
+
+  /// Runs the measurement at `time_s` of the host's clock through the model; returns how late the
+  /// model's answer is, the constant latency taken off [s].
+  double error_at(ClockModel& model, double time_s) {
+    const double device_s = std::fmod(start_of_day_s + (1 + drift) * time_s + jump_s, kDay_s);
+    const double arrival_s =
+        time_s + kLatency_s + extra_late_s + jitter_s_ * exponential_(generator_);
+    extra_late_s = 0;
+    const std::int64_t host_ns = model.observe(device_s, kBoot_ns + std::llround(arrival_s * 1e9));
+    return static_cast<double>(host_ns - kBoot_ns) * 1e-9 - time_s - kLatency_s;
+  }
+
+ private:
+  static constexpr std::int64_t kBoot_ns = 7'000'000'000'000;
+  std::mt19937 generator_;
+  std::exponential_distribution<double> exponential_{1.0};
+  double jitter_s_;
+};
+
+struct Spread {
+  double largest_s{0};
+  double rms_jerk_s{0};  ///< of the change of the error from one sample to the next
+};
+
+Spread run(ClockModel& model, Device& device, double from_s, double to_s, double rate_hz = 60) {
+  Spread spread;
+  double sum = 0;
+  double last = device.error_at(model, from_s);
+  int n = 0;
+  for (double time_s = from_s + 1 / rate_hz; time_s < to_s; time_s += 1 / rate_hz, ++n) {
+    const double error = device.error_at(model, time_s);
+    spread.largest_s = std::max(spread.largest_s, std::abs(error));
+    sum += (error - last) * (error - last);
+    last = error;
+  }
+  spread.rms_jerk_s = std::sqrt(sum / n);
+  return spread;
+}
+
+TEST(ClockModel, ConvergesWithinTwoSecondsOfJitteryData) {
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    for (const double drift : {-100e-6, 0.0, 100e-6}) {
+      ClockModel model;
+      Device device(seed);
+      device.drift = drift;
+      run(model, device, 0, 2);
+      EXPECT_LT(run(model, device, 2, 10).largest_s, 0.2e-3) << seed << " drift " << drift;
+      const Spread settled = run(model, device, 10, 60);
+      EXPECT_LT(settled.largest_s, 0.05e-3) << seed << " drift " << drift;
+      EXPECT_LT(settled.rms_jerk_s, 2e-6) << seed << " drift " << drift;
+      EXPECT_EQ(model.restarts(), 0);
+    }
+  }
+}
+
+TEST(ClockModel, ReportsTheDrift) {
+  ClockModel model;
+  Device device(1);
+  device.drift = 80e-6;
+  run(model, device, 0, 30);
+  EXPECT_NEAR(model.drift(), 80e-6, 10e-6);
+}
+
+TEST(ClockModel, NeverRunsBackwardsAndNeverJumps) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    ClockModel model;
+    Device device(seed, 5e-3);
+    double last = device.error_at(model, 0);
+    for (int i = 1; i < 1200; ++i) {
+      const double error = device.error_at(model, i / 60.0);
+      EXPECT_LT(std::abs(error - last), 0.5 / 60.0) << "sample " << i;  // so time advances
+      if (i > 60) {
+        EXPECT_LT(std::abs(error - last), 0.1e-3) << "sample " << i;
+      }
+      last = error;
+    }
+  }
+}
+
+TEST(ClockModel, PassesMidnight) {
+  ClockModel model;
+  Device device(2);
+  device.start_of_day_s = kDay_s - 5;
+  run(model, device, 0, 4);
+  EXPECT_LT(run(model, device, 4, 10).largest_s, 0.1e-3);
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, PassesMidnightDuringALongPause) {
+  ClockModel model;
+  Device device(3);
+  run(model, device, 0, 4);
+  const double after_s = 14 * 3600.0;  // 1 ppm of drift stays below a jump
+  run(model, device, after_s, after_s + 2);
+  EXPECT_LT(run(model, device, after_s + 2, after_s + 4).largest_s, 0.2e-3);
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, BridgesGaps) {
+  ClockModel model;
+  Device device(4);
+  device.drift = 50e-6;
+  run(model, device, 0, 10);
+  EXPECT_LT(run(model, device, 15, 20).largest_s, 0.1e-3);
+  // 17 s on, an error of the drift of some ppm has grown to a quarter of a millisecond.
+  EXPECT_LT(run(model, device, 37, 39).largest_s, 0.5e-3);
+  EXPECT_LT(run(model, device, 39, 42).largest_s, 0.1e-3);
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, RestartsWhenTheDeviceClockJumps) {
+  for (const double jump_s : {-7.0, -0.2, 0.2, 3600.0}) {
+    ClockModel model;
+    Device device(5);
+    run(model, device, 0, 5);
+    device.jump_s = jump_s;
+    run(model, device, 5, 7);
+    EXPECT_EQ(model.restarts(), 1) << jump_s;
+    EXPECT_LT(run(model, device, 7, 12).largest_s, 0.2e-3) << jump_s;
+  }
+}
+
+TEST(ClockModel, DuringAJumpNothingIsLaterThanItsArrival) {
+  ClockModel model;
+  Device device(6);
+  run(model, device, 0, 5);
+  device.jump_s = 3600;
+  for (int i = 0; i < 10; ++i) EXPECT_LT(device.error_at(model, 5 + i / 60.0), 0.02);
+}
+
+TEST(ClockModel, LateDatagramsAreOnlyJitter) {
+  ClockModel model;
+  Device device(7);
+  run(model, device, 0, 5);
+  for (int i = 0; i < 300; ++i) {
+    if (i % 20 < 3) device.extra_late_s = 0.2;
+    EXPECT_LT(std::abs(device.error_at(model, 5 + i / 60.0)), 0.1e-3);
+  }
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, AStalledNetworkIsNoJump) {
+  ClockModel model;
+  Device device(8);
+  run(model, device, 0, 5);
+  for (int i = 0; i < 60; ++i) {  // one second of datagrams, delivered all at once
+    device.extra_late_s = 1.0 - i / 60.0;
+    EXPECT_LT(std::abs(device.error_at(model, 5 + i / 60.0)), 0.1e-3) << i;
+  }
+  EXPECT_LT(run(model, device, 6, 10).largest_s, 0.1e-3);
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, IsCausal) {
+  std::vector<double> first;
+  for (const int length : {300, 600}) {
+    ClockModel model;
+    Device device(9);
+    std::vector<double> errors;
+    for (int i = 0; i < length; ++i) errors.push_back(device.error_at(model, i / 60.0));
+    if (first.empty()) first = errors;
+    for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(errors[i], first[i]);
+  }
+}
+
+TEST(ClockModel, ForgetsAnOldLatency) {
+  ClockModel model;
+  Device device(10);
+  run(model, device, 0, 5);
+  for (int i = 0; i < 30 * 60; ++i) {  // the route became 10 ms longer
+    device.extra_late_s = 0.010;
+    device.error_at(model, 5 + i / 60.0);
+  }
+  device.extra_late_s = 0.010;
+  EXPECT_NEAR(device.error_at(model, 35), 0.010, 0.1e-3);
+  EXPECT_EQ(model.restarts(), 0);
+}
+
+TEST(ClockModel, AnswersNonsenseWithTheArrival) {
+  ClockModel model;
+  EXPECT_EQ(model.observe(std::numeric_limits<double>::quiet_NaN(), 17), 17);
+  EXPECT_EQ(model.observe(100.0, 1'000'000'000), 1'000'000'000);
+  EXPECT_EQ(model.observe(std::numeric_limits<double>::infinity(), 1'016'000'000), 1'016'000'000);
+  EXPECT_NEAR(static_cast<double>(model.observe(100.02, 1'020'000'000)), 1.02e9, 1.0);
+}
+
+}  // namespace
+}  // namespace handeye

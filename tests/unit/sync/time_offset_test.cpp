@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/sync/time_offset.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace handeye {
+namespace {
+
+/// Free-hand rotation: a few incommensurable swings about each axis, +-20 deg.
+Eigen::Matrix3d hand_rotation(double time_s) {
+  const auto swing = [&](double hz, double phase) {
+    return std::sin(2 * kPi * hz * time_s + phase);
+  };
+  return exp_so3(rad_from_deg(20) *
+                 Eigen::Vector3d(0.6 * swing(0.31, 0.2) + 0.4 * swing(0.73, 1.0),
+                                 0.6 * swing(0.23, 2.0) + 0.4 * swing(0.89, 0.4),
+                                 0.6 * swing(0.41, 4.0) + 0.4 * swing(0.61, 2.2)));
+}
+
+struct Streams {
+  PoseBuffer hand;
+  std::vector<EyeSample> eye;
+};
+
+/// Camera stamps are the true times; tracker stamps are true time - offset, so that adding the
+/// offset to a tracker stamp gives the camera's stamp of the same instant.
+template <typename Rotation>
+Streams simulate(const Rotation& rotation, double time_offset_s, double hand_noise_rad,
+                 double eye_noise_rad, std::uint32_t seed, double length_s = 16) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double sigma) {
+    return exp_so3(sigma *
+                   Eigen::Vector3d(normal(generator), normal(generator), normal(generator)));
+  };
+  const Eigen::Matrix3d eye_from_hand = exp_so3({1.0, -0.4, 2.0});
+  Streams streams;
+  for (int i = 0; i < static_cast<int>(length_s * 60); ++i) {
+    const double time_s = i / 60.0;
+    HandSample sample{std::llround((time_s - time_offset_s) * 1e9), true, Pose::Identity()};
+    sample.room_from_hand.linear() = rotation(time_s) * noise(hand_noise_rad);
+    streams.hand.push(sample);
+  }
+  for (int i = 25; i < static_cast<int>(length_s * 25) - 25; ++i) {
+    const double time_s = i / 25.0 + 0.0031;
+    EyeSample sample{std::llround(time_s * 1e9), Pose::Identity()};
+    sample.eye_from_scene.linear() =
+        noise(eye_noise_rad) * eye_from_hand * rotation(time_s).transpose();
+    streams.eye.push_back(sample);
+  }
+  return streams;
+}
+
+TEST(TimeOffset, IsWhatMustBeAddedToTrackerStamps) {
+  for (const double offset_s : {-0.3, -0.0217, 0.0, 0.0033, 0.150}) {
+    const Streams streams = simulate(hand_rotation, offset_s, 0, 0, 1);
+    const auto found = correlate_angular_speed(streams.hand, streams.eye);
+    ASSERT_TRUE(found) << offset_s;
+    EXPECT_NEAR(found->time_offset_s, offset_s, 0.3e-3);
+    EXPECT_GT(found->peak, 0.999);
+  }
+}
+
+TEST(TimeOffset, IsUnbiasedAndHonestUnderNoise) {
+  double sum = 0, squares = 0, normalised = 0;
+  constexpr int kSeeds = 40;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Streams streams = simulate(hand_rotation, 0.042, rad_from_deg(0.06), rad_from_deg(0.03),
+                                     static_cast<std::uint32_t>(seed));
+    const auto found = correlate_angular_speed(streams.hand, streams.eye);
+    ASSERT_TRUE(found);
+    const double error = found->time_offset_s - 0.042;
+    sum += error;
+    squares += error * error;
+    normalised += error * error / (found->sigma_s * found->sigma_s);
+  }
+  EXPECT_LT(std::abs(sum / kSeeds), 0.2e-3);
+  EXPECT_LT(std::sqrt(squares / kSeeds), 0.5e-3);
+  EXPECT_LT(normalised / kSeeds, 2.0);
+  EXPECT_GT(normalised / kSeeds, 0.05);
+}
+
+TEST(TimeOffset, NeedsRotation) {
+  const auto still = [](double) { return Eigen::Matrix3d(Eigen::Matrix3d::Identity()); };
+  const Streams streams = simulate(still, 0.01, rad_from_deg(0.06), rad_from_deg(0.03), 2);
+  EXPECT_FALSE(correlate_angular_speed(streams.hand, streams.eye));
+}
+
+TEST(TimeOffset, RefusesUnrelatedMotion) {
+  Streams streams = simulate(hand_rotation, 0, 0, 0, 3);
+  streams.eye = simulate([](double t) { return hand_rotation(1.7 * t + 40); }, 0, 0, 0, 3).eye;
+  EXPECT_FALSE(correlate_angular_speed(streams.hand, streams.eye));
+}
+
+TEST(TimeOffset, RefusesPeriodicMotion) {
+  const auto periodic = [](double time_s) {
+    return exp_so3({0, 0, 0.3 * std::sin(2 * kPi * 1.5 * time_s)});
+  };
+  const Streams streams = simulate(periodic, 0.01, 0, 0, 4);
+  EXPECT_FALSE(correlate_angular_speed(streams.hand, streams.eye));
+}
+
+TEST(TimeOffset, RefusesAnOffsetBeyondTheSearch) {
+  const Streams streams = simulate(hand_rotation, 0.55, 0, 0, 5);
+  TimeOffsetOptions options;
+  options.search_s = 0.2;
+  const auto found = correlate_angular_speed(streams.hand, streams.eye, options);
+  EXPECT_FALSE(found) << found->time_offset_s;
+}
+
+TEST(TimeOffset, SurvivesHiddenStretchesAndMissingFrames) {
+  Streams streams = simulate(hand_rotation, -0.02, rad_from_deg(0.06), rad_from_deg(0.03), 6);
+  PoseBuffer holed;
+  for (std::size_t i = 0; i < streams.hand.size(); ++i) {
+    HandSample sample = streams.hand.at(i);
+    sample.tracked = i % 200 > 40;
+    holed.push(sample);
+  }
+  std::vector<EyeSample> thinned;
+  for (std::size_t i = 0; i < streams.eye.size(); ++i) {
+    if (i % 7 != 3 && i % 60 > 10) thinned.push_back(streams.eye[i]);
+  }
+  const auto found = correlate_angular_speed(holed, thinned);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->time_offset_s, -0.02, 3e-3);
+}
+
+TEST(TimeOffset, NothingFromNothing) {
+  EXPECT_FALSE(correlate_angular_speed(PoseBuffer(), {}));
+}
+
+/// Rows t [s], x y z [m], qx qy qz qw.
+std::vector<std::pair<std::int64_t, Pose>> read_stream(const std::filesystem::path& path) {
+  std::vector<std::pair<std::int64_t, Pose>> rows;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::array<double, 8> v{};
+    std::stringstream fields(line);
+    std::string field;
+    for (double& value : v) {
+      if (!std::getline(fields, field, ',')) return {};
+      value = std::stod(field);
+    }
+    rows.emplace_back(
+        std::llround(v[0] * 1e9),
+        make_pose({v[7], v[4], v[5], v[6]}, 1000.0 * Eigen::Vector3d(v[1], v[2], v[3])));
+  }
+  return rows;
+}
+
+TEST(TimeOffset, OfTheRealViconStreams) {
+  const char* configured = std::getenv("HANDEYE_DATA");
+  const std::filesystem::path data = configured ? configured : HANDEYE_SOURCE_DIR "/../shared/data";
+  const auto hand_rows = read_stream(data / "streams/vicon_hand.csv");
+  const auto eye_rows = read_stream(data / "streams/camera_eye.csv");
+  if (hand_rows.empty() || eye_rows.empty()) GTEST_SKIP() << "no streams in " << data;
+  PoseBuffer hand({hand_rows.size(), 100'000'000});
+  for (const auto& [time, pose] : hand_rows) hand.push({time, true, pose});
+  std::vector<EyeSample> eye;
+  for (const auto& [time, pose] : eye_rows) eye.push_back({time, pose.inverse()});
+  const auto found = correlate_angular_speed(hand, eye);
+  ASSERT_TRUE(found);
+  RecordProperty("time_offset_ms", std::to_string(1e3 * found->time_offset_s));
+  EXPECT_GT(found->time_offset_s, -0.030);
+  EXPECT_LT(found->time_offset_s, -0.018);
+}
+
+}  // namespace
+}  // namespace handeye

@@ -12,47 +12,48 @@
 namespace handeye {
 
 struct ReconstructionOptions {
-  int min_common_features{25};         ///< between the two views that start it
-  double min_start_parallax_px{20};    ///< median, after derotation, between those views (at 600 px focal length)
-  double max_reprojection_px{2.0};     ///< a point or an observation beyond it is an outlier
+  int min_common_features{25};  ///< between the two views that start it
+  double min_start_parallax_px{
+      20};  ///< median, after derotation, between those views (at 600 px focal length)
+  double max_reprojection_px{2.0};  ///< a point or an observation beyond it is an outlier
   double min_triangulation_deg{2.0};
   int min_resection_inliers{15};
-  double keyframe_parallax_px{8};      ///< median movement since the last keyframe that makes a new one
-  int max_keyframes{200};              ///< beyond it keyframes are thinned evenly
-  int local_window{8};                 ///< keyframes adjusted when one is added
-  double robust_px{1.5};               ///< Huber loss of the adjustments
-  int threads{1};                      ///< Ceres with two is not reproducible
+  double keyframe_parallax_px{8};  ///< median movement since the last keyframe that makes a new one
+  int max_keyframes{200};          ///< beyond it keyframes are thinned evenly
+  int local_window{8};             ///< keyframes adjusted when one is added
+  double robust_px{1.5};           ///< Huber loss of the adjustments
+  int threads{1};                  ///< Ceres with two is not reproducible
 };
 
 /// A frame whose camera pose is known.
 struct RegisteredFrame {
-  std::int64_t index{0};               ///< TrackedFrame::index
+  std::int64_t index{0};  ///< TrackedFrame::index
   std::int64_t timestamp_ns{0};
   Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units
   bool keyframe{false};
-  double reprojection_px{0};           ///< rms over its inlier observations
+  double reprojection_px{0};  ///< rms over its inlier observations
   int inliers{0};
 };
 
 /// Why there is no reconstruction (yet).
 enum class ReconstructionState {
-  kTooFewFeatures,   ///< tracks are too few or too short to say anything
-  kNoMotion,         ///< the image does not move
-  kNoParallax,       ///< it moves, but as under pure rotation: no depth
-  kTracking,         ///< started; frames are being registered
+  kTooFewFeatures,  ///< tracks are too few or too short to say anything
+  kNoMotion,        ///< the image does not move
+  kNoParallax,      ///< it moves, but as under pure rotation: no depth
+  kTracking,        ///< started; frames are being registered
 };
 
 struct Reconstruction {
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
-  std::vector<RegisteredFrame> frames;   ///< of the largest connected part, in order of time
+  std::vector<RegisteredFrame> frames;  ///< of the largest connected part, in order of time
   int points{0};
-  double reprojection_px{0};             ///< rms over all inlier observations of that part
+  double reprojection_px{0};  ///< rms over all inlier observations of that part
 };
 
-/// Camera motion and scene up to one similarity from feature tracks, frame by frame: two views by the
-/// essential matrix, resection, triangulation, local bundle adjustment; `finish` adjusts everything.
-/// After a loss of tracking a new part starts, with a scale of its own; only the largest is returned.
-/// Deterministic. One thread.
+/// Camera motion and scene up to one similarity from feature tracks, frame by frame: two views by
+/// the essential matrix, resection, triangulation, local bundle adjustment; `finish` adjusts
+/// everything. After a loss of tracking a new part starts, with a scale of its own; only the
+/// largest is returned. Deterministic. One thread.
 class IncrementalReconstruction {
  public:
   IncrementalReconstruction(const CameraModel& camera, const ReconstructionOptions& options = {});

@@ -12,21 +12,21 @@ namespace handeye {
 
 /// One feature in one image.
 struct Observation {
-  std::int64_t feature_id{0};   ///< unique for the tracker's life; a lost feature never returns
-  Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};   ///< px, pixel centres at integers
+  std::int64_t feature_id{0};  ///< unique for the tracker's life; a lost feature never returns
+  Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};  ///< px, pixel centres at integers
 };
 
 /// What was tracked into one image, ordered by feature_id.
 struct TrackedFrame {
-  std::int64_t timestamp_ns{0};   ///< camera stamp of the image
-  std::int64_t index{0};          ///< counts the frames given to the tracker, from 0
+  std::int64_t timestamp_ns{0};  ///< camera stamp of the image
+  std::int64_t index{0};         ///< counts the frames given to the tracker, from 0
   std::vector<Observation> observations;
 };
 
 struct TrackerOptions {
   int max_features{300};
-  int window_px{21};                   ///< side of the compared patch
-  int pyramid_levels{4};
+  int window_px{0};         ///< side of the compared patch, odd; 0: by the image's width, 21 up to 1280 px
+  int pyramid_levels{0};    ///< beyond the image itself; 0: by the image's width, 4 up to 1280 px
   double min_distance_px{10};          ///< between features when new ones are sought
   double quality{0.01};                ///< weakest corner accepted, of the strongest in the image
   double max_forward_backward_px{0.5}; ///< tracked back it must land this near to where it began

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/reconstruction/resection.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+#include <opencv2/calib3d.hpp>
+
+#include "daemon/reconstruction/median.hpp"
+#include "daemon/reconstruction/projection.hpp"
+
+namespace handeye {
+namespace {
+
+constexpr int kRobustIterations = 12;
+constexpr int kPolishIterations = 5;
+constexpr double kMinDepth = 1e-6;
+constexpr int kRansacIterations = 300;
+
+double error_px(const CameraModel& camera, const Pose& eye_from_scene, const PointMatch& match) {
+  const Eigen::Vector3d point_eye = eye_from_scene * match.point_scene;
+  if (!(point_eye.z() > kMinDepth)) return std::numeric_limits<double>::infinity();
+  return (project<double>(camera, point_eye) - match.pixel).norm();
+}
+
+/// One weighted Gauss-Newton step: left perturbation of the rotation, translation added.
+/// `weight` maps an error in px to a weight. Returns the step's size in rad and relative depth.
+template <typename Weight>
+double step_pose(const CameraModel& camera, const std::vector<PointMatch>& matches,
+                 const Weight& weight, Pose& pose) {
+  Matrix6d normal = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double depth = kMinDepth;
+  for (const PointMatch& match : matches) {
+    const Eigen::Vector3d rotated = pose.linear() * match.point_scene;
+    const Eigen::Vector3d point_eye = rotated + pose.translation();
+    if (!(point_eye.z() > kMinDepth)) continue;
+    const Projection projection = project_with_derivative(camera, point_eye);
+    const Eigen::Vector2d error = projection.pixel - match.pixel;
+    const double w = weight(error.norm());
+    if (w <= 0) continue;
+    Eigen::Matrix<double, 2, 6> by_pose;
+    by_pose.leftCols<3>() = -projection.by_point_eye * skew(rotated);
+    by_pose.rightCols<3>() = projection.by_point_eye;
+    normal.noalias() += w * by_pose.transpose() * by_pose;
+    gradient.noalias() += w * by_pose.transpose() * error;
+    depth = std::max(depth, point_eye.z());
+  }
+  const Vector6d step = normal.ldlt().solve(gradient);
+  if (!step.allFinite()) return std::numeric_limits<double>::infinity();
+  pose.linear() = exp_so3(-step.head<3>()) * pose.linear();
+  pose.translation() -= step.tail<3>();
+  return step.head<3>().norm() + step.tail<3>().norm() / depth;
+}
+
+std::optional<Pose> pose_by_ransac(const CameraModel& camera,
+                                   const std::vector<PointMatch>& matches,
+                                   const ResectionOptions& options) {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> rays;
+  for (const PointMatch& match : matches) {
+    const auto ray = unproject(camera, match.pixel);
+    if (!ray) continue;
+    points.emplace_back(match.point_scene.x(), match.point_scene.y(), match.point_scene.z());
+    rays.emplace_back(ray->x(), ray->y());
+  }
+  if (static_cast<int>(points.size()) < std::max(4, options.min_inliers)) return std::nullopt;
+  // OpenCV seeds this RANSAC with a constant: the same matches give the same pose.
+  cv::Vec3d rotation;
+  cv::Vec3d translation;
+  std::vector<int> inliers;
+  const auto threshold = static_cast<float>(2.0 * options.max_reprojection_px / focal_px(camera));
+  if (!cv::solvePnPRansac(points, rays, cv::Matx33d::eye(), cv::noArray(), rotation, translation,
+                          false, kRansacIterations, threshold, 0.999, inliers, cv::SOLVEPNP_AP3P)) {
+    return std::nullopt;
+  }
+  Pose pose = Pose::Identity();
+  pose.linear() = exp_so3({rotation[0], rotation[1], rotation[2]});
+  pose.translation() = Eigen::Vector3d(translation[0], translation[1], translation[2]);
+  if (!pose.matrix().allFinite()) return std::nullopt;
+  return pose;
+}
+
+}  // namespace
+
+std::optional<Resection> refine_pose(const CameraModel& camera,
+                                     const std::vector<PointMatch>& matches, const Pose& predicted,
+                                     const ResectionOptions& options) {
+  if (static_cast<int>(matches.size()) < options.min_inliers) return std::nullopt;
+  Resection result;
+  Pose& pose = result.eye_from_scene;
+  pose = predicted;
+  std::vector<double> errors_px(matches.size());
+  // Cauchy weights whose width follows the errors: from a poor prediction it begins wide.
+  for (int iteration = 0; iteration < kRobustIterations; ++iteration) {
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      errors_px[i] = error_px(camera, pose, matches[i]);
+    }
+    const double width_px = std::max(options.robust_px, 1.5 * median(errors_px));
+    if (!std::isfinite(width_px)) return std::nullopt;
+    const double step = step_pose(
+        camera, matches,
+        [width_px](double error) { return 1.0 / (1.0 + error * error / (width_px * width_px)); },
+        pose);
+    if (!std::isfinite(step)) return std::nullopt;
+    if (step < 1e-6) break;
+  }
+  // Huber on the inliers alone, as the adjustment of the whole scene will judge them.
+  for (int iteration = 0; iteration < kPolishIterations; ++iteration) {
+    const double step = step_pose(
+        camera, matches,
+        [&options](double error) {
+          if (error > options.max_reprojection_px) return 0.0;
+          return error <= options.robust_px ? 1.0 : options.robust_px / error;
+        },
+        pose);
+    if (!std::isfinite(step)) return std::nullopt;
+    if (step < 1e-9) break;
+  }
+  double sum = 0.0;
+  for (const PointMatch& match : matches) {
+    const double error = error_px(camera, pose, match);
+    if (error > options.max_reprojection_px) continue;
+    sum += error * error;
+    ++result.inliers;
+  }
+  if (result.inliers < options.min_inliers ||
+      result.inliers < options.min_inlier_ratio * static_cast<double>(matches.size())) {
+    return std::nullopt;
+  }
+  result.reprojection_px = std::sqrt(sum / result.inliers);
+  return result;
+}
+
+std::optional<Resection> resect(const CameraModel& camera, const std::vector<PointMatch>& matches,
+                                const Pose& predicted, const ResectionOptions& options) {
+  if (const auto near = refine_pose(camera, matches, predicted, options)) return near;
+  const auto found = pose_by_ransac(camera, matches, options);
+  if (!found) return std::nullopt;
+  return refine_pose(camera, matches, *found, options);
+}
+
+}  // namespace handeye

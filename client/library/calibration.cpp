@@ -31,12 +31,12 @@ std::string seconds(milliseconds duration) {
 
 }  // namespace
 
-Calibration::Calibration(Client& client, const StartOptions& options,
+Calibration::Calibration(Client& client, const StartRequest& wanted,
                          const CalibrationLimits& limits, Client::StatusHandler on_status)
     : client_(client),
       limits_(limits),
       on_status_(std::move(on_status)),
-      request_id_(client.start(options)),
+      request_id_(client.start(wanted)),
       started_(Clock::now()) {
   client_.on_status([this](const status_t& status) { take_status(status); });
   client_.on_result([this](const result_t& result) { take_result(result); });
@@ -174,9 +174,9 @@ void Calibration::end(Kind kind, std::string text) {
   client_.abandon(request_id_);
 }
 
-CalibrationOutcome calibrate(Client& client, const StartOptions& options,
+CalibrationOutcome calibrate(Client& client, const StartRequest& wanted,
                              const CalibrationLimits& limits, Client::StatusHandler on_status) {
-  Calibration calibration(client, options, limits, std::move(on_status));
+  Calibration calibration(client, wanted, limits, std::move(on_status));
   while (!calibration.outcome()) calibration.spin_once(milliseconds(50));
   return *calibration.outcome();
 }

@@ -59,7 +59,7 @@ class Calibration {
   using Kind = CalibrationOutcome::Kind;
 
   /// Sends START. on_status may be empty; it is called with every STATUS heard.
-  Calibration(Client& client, const StartOptions& options, const CalibrationLimits& limits = {},
+  Calibration(Client& client, const StartRequest& wanted, const CalibrationLimits& limits = {},
               Client::StatusHandler on_status = {});
   ~Calibration();
   Calibration(const Calibration&) = delete;
@@ -110,7 +110,7 @@ class Calibration {
 };
 
 /// Runs a calibration and waits for its end: for programs that have nothing else to do.
-CalibrationOutcome calibrate(Client& client, const StartOptions& options,
+CalibrationOutcome calibrate(Client& client, const StartRequest& wanted,
                              const CalibrationLimits& limits = {},
                              Client::StatusHandler on_status = {});
 

@@ -52,12 +52,12 @@ Client::Client(const ClientOptions& options) : request_period_(options.request_p
 
 Client::~Client() = default;
 
-std::int64_t Client::start(const StartOptions& options) {
+std::int64_t Client::start(const StartRequest& wanted) {
   request_t request = make_request(request_t::START, 0);
-  request.body_id = options.body_id;
-  request.wanted_sigma_rotation_deg = options.wanted_sigma_rotation_deg;
-  request.wanted_sigma_translation_mm = options.wanted_sigma_translation_mm;
-  request.max_duration_s = options.max_duration_s;
+  request.body_id = wanted.body_id;
+  request.wanted_sigma_rotation_deg = wanted.wanted_sigma_rotation_deg;
+  request.wanted_sigma_translation_mm = wanted.wanted_sigma_translation_mm;
+  request.max_duration_s = wanted.max_duration_s;
   return send(request);
 }
 
@@ -71,6 +71,12 @@ std::int64_t Client::cancel(std::int64_t target_request_id) {
 
 std::int64_t Client::describe() {
   return send(make_request(request_t::DESCRIBE, 0));
+}
+
+std::int64_t Client::record(double duration_s) {
+  request_t request = make_request(request_t::RECORD, 0);
+  request.max_duration_s = duration_s;
+  return send(request);
 }
 
 void Client::stop_repeating(std::int64_t request_id) {

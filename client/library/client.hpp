@@ -31,7 +31,7 @@ struct ClientOptions {
 };
 
 /// What a START asks for. What is left at its default is decided by the daemon's configuration.
-struct StartOptions {
+struct StartRequest {
   int body_id{-1};                        ///< the wire's number, from 0; -1: the configured body
   double wanted_sigma_rotation_deg{0};    ///< accept at or below; <= 0: the configured one
   double wanted_sigma_translation_mm{0};  ///< accept at or below; <= 0: the configured one
@@ -68,10 +68,13 @@ class Client {
 
   /// Each sends a request, keeps it repeated, and returns its request_id at once.
   /// target_request_id: the calibration meant; 0: whichever runs.
-  std::int64_t start(const StartOptions& options);
+  std::int64_t start(const StartRequest& wanted);
   std::int64_t finish(std::int64_t target_request_id = 0);
   std::int64_t cancel(std::int64_t target_request_id = 0);
+  /// Asks for the last RESULT again.
   std::int64_t describe();
+  /// Asks the daemon to publish DATAGRAM, and FRAME of its own camera, for duration_s from now.
+  std::int64_t record(double duration_s);
 
   /// Stops repeating a request, but still takes its acknowledgement when the daemon has heard it.
   void stop_repeating(std::int64_t request_id);
@@ -85,6 +88,7 @@ class Client {
 
   /// Called from within spin_once() with every STATUS, after its acknowledgements were taken in,
   /// and every RESULT, whoever asked for it. One handler each: a later one replaces the earlier.
+  /// A handler must not throw: LCM's C code stands between it and the caller of spin_once().
   void on_status(StatusHandler handler) { on_status_ = std::move(handler); }
   void on_result(ResultHandler handler) { on_result_ = std::move(handler); }
 

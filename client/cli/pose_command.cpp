@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <handeye/camera_pose_t.hpp>
+#include <memory>
+#include <vector>
+
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <fmt/format.h>
+
+#include "client/cli/commands.hpp"
+#include "client/cli/interrupt.hpp"
+#include "client/cli/options.hpp"
+#include "client/cli/status_text.hpp"
+#include "protocol/bus.hpp"
+
+namespace handeye::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPatience{2000};
+
+struct PoseOptions {
+  ClientOptions client;
+  OutputOptions output;
+  std::int64_t count{0};  ///< 0: no end
+};
+
+std::string_view validity_word(std::int32_t validity) {
+  switch (validity) {
+    case camera_pose_t::VALID:
+      return "valid";
+    case camera_pose_t::TRACKER_HIDDEN:
+      return "tracker_hidden";
+    case camera_pose_t::TRACKER_GAP:
+      return "tracker_gap";
+    case camera_pose_t::TRACKER_LATE:
+      return "tracker_late";
+    case camera_pose_t::TRACKER_SILENT:
+      return "tracker_silent";
+    default:
+      return "unknown";
+  }
+}
+
+std::string pose_json_line(const camera_pose_t& pose) {
+  const bool valid = pose.validity == camera_pose_t::VALID;
+  nlohmann::ordered_json json{{"timestamp_ns", pose.timestamp_ns},
+                              {"frame_seq", pose.frame_seq},
+                              {"validity", validity_word(pose.validity)},
+                              {"room_from_eye", nullptr},
+                              {"covariance", nullptr},
+                              {"calibration_request_id", pose.calibration_request_id},
+                              {"calibration_age_s", pose.calibration_age_s}};
+  if (valid) {
+    json["room_from_eye"] = {{"q_wxyz", pose.q_wxyz}, {"t_mm", pose.t_mm}};
+    for (int row = 0; row < 6; ++row) {
+      json["covariance"].push_back(
+          std::vector<double>(pose.covariance + 6 * row, pose.covariance + 6 * (row + 1)));
+    }
+  }
+  return dump_json(json, -1);
+}
+
+std::string pose_line(const camera_pose_t& pose) {
+  const auto& q = pose.q_wxyz;
+  const auto& t = pose.t_mm;
+  return fmt::format("{} {} {:.9f} {:.9f} {:.9f} {:.9f} {:.4f} {:.4f} {:.4f}", pose.timestamp_ns,
+                     validity_word(pose.validity), q[0], q[1], q[2], q[3], t[0], t[1], t[2]);
+}
+
+/// Until Ctrl-C, the wanted number of poses, or until the reader of a pipe has gone.
+ExitCode run_pose(const PoseOptions& options) {
+  Interrupt interrupt;
+  Bus bus(options.client.lcm_url);
+  bool readable = true;
+  std::int64_t printed = 0;
+  bool daemon_heard = false;
+  const Channels channels(options.client.channel_prefix);
+  bus.subscribe<status_t>(channels.status, [&](const status_t&) { daemon_heard = true; });
+  bus.subscribe<camera_pose_t>(channels.camera_pose, [&](const camera_pose_t& pose) {
+    if (options.count > 0 && printed == options.count) return;
+    if (printed == 0 && !options.output.json) {
+      print_line("# timestamp_ns validity qw qx qy qz x_mm y_mm z_mm  (room_from_eye)");
+    }
+    readable = print_line(options.output.json ? pose_json_line(pose) : pose_line(pose));
+    ++printed;
+  });
+  const auto complain_at = Clock::now() + kPatience;
+  bool complained = false;
+  const auto wanted_more = [&] {
+    return readable && (options.count == 0 || printed < options.count);
+  };
+  while (wanted_more() && !interrupt.wait(bus.file_descriptor(), milliseconds(100))) {
+    while (wanted_more() && bus.handle(milliseconds(0))) {
+    }
+    if (printed == 0 && !complained && Clock::now() > complain_at) {
+      complained = true;
+      print_error(daemon_heard
+                      ? "the daemon is heard but publishes no CAMERA_POSE: calibrate first "
+                        "(handeye calibrate), and check the camera (handeye status)"
+                      : "no daemon is heard: see 'handeye status'");
+    }
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_pose_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<PoseOptions>();
+  CLI::App* command =
+      app.add_subcommand("pose", "print the camera's pose in the room with every frame");
+  command->add_option("--count", options->count, "stop after this many; default: at Ctrl-C")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->type_name("N");
+  add_output_options(*command, options->output);
+  add_client_options(*command, options->client);
+  command->footer("With --json: one document a line. Poses that are not 'valid' are all zero.");
+  command->callback([options, &action] { action = [options] { return run_pose(*options); }; });
+}
+
+}  // namespace handeye::cli

@@ -16,10 +16,10 @@ namespace handeye::dtrack {
 /// Lines 6d and 6di: a standard or hybrid body.
 struct Body {
   std::int32_t id{0};
-  bool tracked{false};               ///< false: `room_from_body` is the identity, do not use
-  double quality{0};                 ///< 6d: unused by the tracker (1.0)
-  std::int32_t inertial_state{-1};   ///< 6di: 0 none, 1 inertial, 2 optical, 3 both; -1: from 6d
-  double inertial_drift_rad{0};      ///< 6di: estimated drift of the inertial rotation
+  bool tracked{false};              ///< false: `room_from_body` is the identity, do not use
+  double quality{0};                ///< 6d: unused by the tracker (1.0)
+  std::int32_t inertial_state{-1};  ///< 6di: 0 none, 1 inertial, 2 optical, 3 both; -1: from 6d
+  double inertial_drift_rad{0};     ///< 6di: estimated drift of the inertial rotation
   Pose room_from_body{Pose::Identity()};
 };
 
@@ -37,8 +37,8 @@ struct Flystick {
   bool tracked{false};
   double quality{0};
   Pose room_from_body{Pose::Identity()};
-  std::vector<bool> buttons;       ///< button 0 is the trigger
-  std::vector<double> joysticks;   ///< -1..1
+  std::vector<bool> buttons;      ///< button 0 is the trigger
+  std::vector<double> joysticks;  ///< -1..1
 };
 
 /// Lines 6dmt2 and 6dmt: a measurement tool with a spherical tip.
@@ -48,7 +48,7 @@ struct MeasurementTool {
   double quality{0};
   Pose room_from_tool{Pose::Identity()};
   double tip_radius_mm{0};
-  std::vector<bool> buttons;       ///< button 0: a point is being measured
+  std::vector<bool> buttons;  ///< button 0: a point is being measured
   Eigen::Matrix3d tip_covariance_mm2{Eigen::Matrix3d::Zero()};
 };
 
@@ -61,7 +61,7 @@ struct ToolReference {
 
 /// Line 3d: a single marker.
 struct Marker {
-  std::int32_t id{0};              ///< from 1; a lost marker returns with a new id
+  std::int32_t id{0};  ///< from 1; a lost marker returns with a new id
   double quality{0};
   Eigen::Vector3d position_mm{Eigen::Vector3d::Zero()};
 };
@@ -69,8 +69,8 @@ struct Marker {
 struct Finger {
   Pose hand_from_fingertip{Pose::Identity()};
   double tip_radius_mm{0};
-  std::array<double, 3> phalanx_length_mm{};   ///< outer to inner
-  std::array<double, 2> joint_angle_rad{};     ///< outer-middle, middle-inner
+  std::array<double, 3> phalanx_length_mm{};  ///< outer to inner
+  std::array<double, 2> joint_angle_rad{};    ///< outer-middle, middle-inner
 };
 
 /// Line gl: a Fingertracking hand; only tracked ones are sent.
@@ -79,7 +79,7 @@ struct FingertrackingHand {
   double quality{0};
   bool right{false};
   Pose room_from_hand_back{Pose::Identity()};
-  std::vector<Finger> fingers;     ///< thumb first
+  std::vector<Finger> fingers;  ///< thumb first
 };
 
 struct Joint {
@@ -100,7 +100,7 @@ struct CameraStatus {
   std::int32_t id{0};
   std::int32_t reflections{0};
   std::int32_t reflections_used{0};
-  std::int32_t max_intensity{0};   ///< 0..10
+  std::int32_t max_intensity{0};  ///< 0..10
 };
 
 /// Line st: status of the system.
@@ -114,18 +114,19 @@ struct SystemStatus {
 /// Line ts2: measurement time by the controller's clock, and its latency up to sending.
 struct UnixTime {
   std::uint32_t seconds{0};
-  std::uint32_t microseconds{0};   ///< 0..999999
+  std::uint32_t microseconds{0};  ///< 0..999999
   std::uint32_t latency_us{0};
 };
 
 /// A parsed datagram. Reuse one object: its lists keep their memory.
 struct Frame {
-  std::uint32_t number{0};                     ///< fr
-  std::optional<double> seconds_of_day;        ///< ts: since 00:00 UTC, [0, 86400), at the IR flash
-  std::optional<UnixTime> unix_time;           ///< ts2
-  std::optional<std::int32_t> calibrated_bodies;  ///< 6dcal, less old-format Flysticks and tools, >= 0
-  std::optional<std::int32_t> calibrated_hands;   ///< glcal
-  std::vector<Body> bodies;                    ///< 6d and 6di; by id, each id once
+  std::uint32_t number{0};               ///< fr
+  std::optional<double> seconds_of_day;  ///< ts: since 00:00 UTC, [0, 86400), at the IR flash
+  std::optional<UnixTime> unix_time;     ///< ts2
+  std::optional<std::int32_t>
+      calibrated_bodies;  ///< 6dcal, less old-format Flysticks and tools, >= 0
+  std::optional<std::int32_t> calibrated_hands;  ///< glcal
+  std::vector<Body> bodies;                      ///< 6d and 6di; by id, each id once
   std::vector<BodyCovariance> covariances;
   std::vector<Flystick> flysticks;
   std::vector<MeasurementTool> tools;

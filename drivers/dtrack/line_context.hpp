@@ -67,9 +67,9 @@ struct LineContext {
   Frame& frame;
   ParseCounters& counters;
   LineMemory& memory;
-  std::uint32_t lines_seen{0};        ///< one bit a line type, for the repeated ones
-  std::int32_t old_flysticks{0};      ///< devices of 6df: 6dcal counts them in
-  std::int32_t old_tools{0};          ///< devices of 6dmt: likewise
+  std::uint32_t parts_seen{0};    ///< one bit a LineType::part that has been filled
+  std::int32_t old_flysticks{0};  ///< devices of 6df: 6dcal counts them in
+  std::int32_t old_tools{0};      ///< devices of 6dmt: likewise
 };
 
 /// Empties a frame, handing the memory of its nested lists to `memory`.

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "drivers/dtrack/frame.hpp"
 #include "drivers/dtrack/line_context.hpp"
 #include "drivers/dtrack/parse_report.hpp"
-#include "drivers/dtrack/scanner.hpp"
 
 namespace handeye::dtrack {
 
@@ -33,8 +31,8 @@ class Parser {
   const ParseCounters& counters() const { return counters_; }
 
  private:
-  ParseStatus reject(ErrorKind error, LineContext& context);
-  void read_line(std::string_view line, LineContext& context);
+  ParseStatus reject(ErrorKind error, Frame& frame);
+  void read_line(std::string_view identifier, std::string_view payload, LineContext& context);
 
   ParseCounters counters_;
   LineMemory memory_;

@@ -38,11 +38,7 @@ struct ReceiverCounters {
 
 /// The UDP socket the tracker sends to. One thread uses it.
 ///
-/// Time stamps: the kernel stamps each datagram on arrival with CLOCK_REALTIME (SO_TIMESTAMPNS).
-/// After each batch both clocks are read, REALTIME between two readings of MONOTONIC, and
-/// arrival = now_monotonic - (now_realtime - stamp). The age of the stamp is short, so slewing does
-/// not matter; should REALTIME be stepped within it, the result is held between the previous
-/// arrival and now, for a socket's queue is in order and nothing arrives in the future.
+/// Arrival times are the kernel's, converted to CLOCK_MONOTONIC as arrival_clock.hpp tells.
 class Receiver {
  public:
   /// Opens, binds, joins and sends the first firewall opener.
@@ -77,16 +73,17 @@ class Receiver {
   static constexpr std::size_t kMostPerCall = 1024;  ///< so that a flood cannot hold the caller
 
  private:
-  struct Buffers;
+  struct Link;
 
-  bool wait(std::chrono::milliseconds timeout);
-  bool fetch();
+  bool wait(std::chrono::milliseconds timeout);  ///< true if there is something to fetch
+  bool fetch();                                  ///< one batch; true if more may be waiting
+  void accept(std::size_t slot_index);
   std::span<const Datagram> fetched() const;
   void send_opener(std::int64_t now_ns);
 
   ReceiverCounters counters_;
   std::uint16_t port_{0};
-  std::unique_ptr<Buffers> buffers_;
+  std::unique_ptr<Link> link_;
 };
 
 }  // namespace handeye::dtrack

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "drivers/dtrack/receiver.hpp"
+
+namespace handeye::dtrack {
+
+/// A bound, non-blocking UDP socket that stamps what it receives and counts what it drops. Closed
+/// with the object.
+class UdpSocket {
+ public:
+  /// Throws UsageError or InputError as Receiver does.
+  explicit UdpSocket(const ReceiverOptions& options);
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  ~UdpSocket();
+
+  int descriptor() const { return descriptor_; }
+  std::uint16_t port() const;  ///< the one it is bound to
+
+ private:
+  void set_up(const ReceiverOptions& options);
+  void bind_to(const ReceiverOptions& options);
+  void join(const ReceiverOptions& options);
+
+  int descriptor_;
+};
+
+}  // namespace handeye::dtrack

@@ -34,7 +34,7 @@ int CheckedImage::decode(const void* message, int offset, int max_length) {
 }
 
 std::optional<std::string> image_problem(const image_t& image) {
-  if (image.timestamp_ns <= 0) return "timestamp_ns must be positive";
+  if (image.timestamp_ns < 0) return "timestamp_ns must not be negative";
   if (image.frame_number < 0) return "frame_number must not be negative";
   if (image.width < 1 || image.width > kMaxImageSide) return "width must be 1..16384";
   if (image.height < 1 || image.height > kMaxImageSide) return "height must be 1..16384";

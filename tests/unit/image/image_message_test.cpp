@@ -106,7 +106,7 @@ TEST(ImageProblem, SaysNothingAboutGoodImages) {
 
 TEST(ImageProblem, NamesTheFieldThatIsWrong) {
   const std::vector<std::pair<std::string, std::function<void(image_t&)>>> mistakes = {
-      {"timestamp_ns", [](image_t& image) { image.timestamp_ns = 0; }},
+      {"timestamp_ns", [](image_t& image) { image.timestamp_ns = -1; }},
       {"frame_number", [](image_t& image) { image.frame_number = -1; }},
       {"width", [](image_t& image) { image.width = 0; }},
       {"width", [](image_t& image) { image.width = 16385; }},

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/simulator/command_line.hpp"
+
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "protocol/bus.hpp"
+#include "protocol/exit_codes.hpp"
+
+namespace handeye::simulator {
+namespace {
+
+/// What CLI11 fills in and parse_command_line then understands.
+struct RawOptions {
+  std::string motion{"free"};
+  std::vector<double> noise_deg_mm{SimulatorOptions{}.tracker_noise_deg,
+                                   SimulatorOptions{}.tracker_noise_mm};
+  std::string camera_out;
+  std::string truth_out;
+};
+
+void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
+  command.add_option("--seed", options.seed, "Draws everything; default: random, printed");
+  command.add_option("--motion", raw.motion, "How the scope is moved")
+      ->check(CLI::IsMember({"free", "translation", "rotation", "single-axis", "pivot", "static"}))
+      ->capture_default_str();
+  command.add_option("--rate", options.camera_rate_hz, "Frames a second")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  command.add_option("--width", options.width, "Image width [px]")
+      ->check(CLI::Range(64, 3840))
+      ->capture_default_str();
+  command.add_option("--height", options.height, "Image height [px]")
+      ->check(CLI::Range(48, 2160))
+      ->capture_default_str();
+  command.add_option("--tracker-rate", options.tracker_rate_hz, "Datagrams a second")
+      ->check(CLI::Range(1.0, 500.0))
+      ->capture_default_str();
+  command.add_option("--noise", raw.noise_deg_mm, "Tracker noise per axis: DEG,MM")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("DEG,MM")
+      ->capture_default_str();
+  command.add_option("--body-id", options.body_id, "The tracked body's number on the wire")
+      ->check(CLI::Range(0, 999))
+      ->capture_default_str();
+  command
+      .add_option("--jpeg-quality", options.jpeg_quality,
+                  "Lowered by itself where a frame would exceed 100 kB")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--camera-out", raw.camera_out, "Writes the intrinsics (camera.json)")
+      ->type_name("FILE");
+  command.add_option("--truth-out", raw.truth_out, "Writes the truth (JSON)")->type_name("FILE");
+}
+
+CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
+  CLI::App* run = program.add_subcommand("run", "Both devices in real time");
+  run->add_option("--duration", line.duration_s, "Seconds; 0: until SIGINT or SIGTERM")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  run->add_option("--tracker-host", line.live.tracker_host, "Where datagrams go")
+      ->capture_default_str();
+  run->add_option("--tracker-port", line.live.tracker_port, "UDP port there")
+      ->check(CLI::Range(1, 65535))
+      ->capture_default_str();
+  run->add_option("--lcm-url", line.live.lcm_url, "LCM provider of the frames")
+      ->capture_default_str();
+  run->add_option("--prefix", line.live.channel_prefix, "Prefix of the LCM channel")
+      ->capture_default_str();
+  add_simulator_options(*run, line.simulator, raw);
+  return run;
+}
+
+CLI::App* add_record(CLI::App& program, CommandLine& line, RawOptions& raw) {
+  CLI::App* record = program.add_subcommand("record", "Both devices into a recording");
+  record->add_option("out", line.recording, "A new LCM log (ends in .lcm) or a new folder")
+      ->required();
+  record->add_option("--duration", line.duration_s, "Seconds")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->required();
+  add_simulator_options(*record, line.simulator, raw);
+  return record;
+}
+
+/// The checks and conversions that go beyond a single option.
+void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
+  line.simulator.motion = motion_from_name(raw.motion).value();
+  line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
+  line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);
+  if (!raw.camera_out.empty()) line.camera_out = raw.camera_out;
+  if (!raw.truth_out.empty()) line.truth_out = raw.truth_out;
+  if (!is_valid_channel_prefix(line.live.channel_prefix)) {
+    throw UsageError(fmt::format("--prefix '{}': use up to 40 letters, digits, '_' and '-'",
+                                 line.live.channel_prefix));
+  }
+  constexpr std::int64_t kShortSeeds = 1'000'000'000;  // short enough to be typed again
+  if (!seed_given) line.simulator.seed = static_cast<std::uint64_t>(random_id() % kShortSeeds);
+}
+
+}  // namespace
+
+std::optional<CommandLine> parse_command_line(int argc, char** argv) {
+  CommandLine line;
+  RawOptions raw;
+  CLI::App program("Simulated tracker (ART DTrack) and endoscope, with known truth", "handeye-sim");
+  program.require_subcommand(1);
+  const CLI::App* run = add_run(program, line, raw);
+  const CLI::App* record = add_record(program, line, raw);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    program.exit(help);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(fmt::format("{}; see handeye-sim --help", error.what()));
+  }
+  const CLI::App* chosen = run->parsed() ? run : record;
+  line.command = run->parsed() ? CommandLine::Command::kRun : CommandLine::Command::kRecord;
+  complete(line, raw, chosen->count("--seed") > 0);
+  return line;
+}
+
+}  // namespace handeye::simulator

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/simulator/record.hpp"
+
+#include <algorithm>
+#include <future>
+#include <limits>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "drivers/recording/recording.hpp"
+#include "drivers/simulator/endoscope_device.hpp"
+#include "drivers/simulator/tracker_device.hpp"
+#include "drivers/simulator/truth_file.hpp"
+
+namespace handeye::simulator {
+namespace {
+
+/// Makes frames in order, some at a time, one a core.
+class FrameBatches {
+ public:
+  explicit FrameBatches(const World& world) : frames_(std::clamp(cores(), 1U, 8U)) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) devices_.emplace_back(world);
+  }
+
+  /// The next frames, beginning with `first`, up to but without `end`.
+  std::span<const SimulatedFrame> make(std::uint32_t first, std::uint32_t end) {
+    const std::size_t count = std::min<std::size_t>(frames_.size(), end - first);
+    std::vector<std::future<void>> pending;
+    for (std::size_t i = 0; i < count; ++i) {
+      pending.push_back(std::async(std::launch::async, [this, first, i] {
+        devices_[i].make(first + static_cast<std::uint32_t>(i), frames_[i]);
+      }));
+    }
+    for (std::future<void>& result : pending) result.get();
+    return {frames_.data(), count};
+  }
+
+ private:
+  static unsigned cores() { return std::thread::hardware_concurrency(); }
+
+  std::vector<EndoscopeDevice> devices_;
+  std::vector<SimulatedFrame> frames_;
+};
+
+}  // namespace
+
+std::filesystem::path truth_path_of(const std::filesystem::path& recording) {
+  if (recording.extension() != ".lcm") return recording / "truth.json";
+  std::filesystem::path path = recording;
+  return path.replace_extension(".truth.json");
+}
+
+DeviceCounts record(const World& world, double duration_s, const std::filesystem::path& path) {
+  const auto writer = create_recording(path, world.camera);
+  write_truth(truth_path_of(path), world);
+
+  DeviceCounts counts;
+  TrackerDevice tracker(world);
+  SimulatedDatagram datagram;
+  tracker.next(datagram);
+  const auto write_datagrams_until = [&](std::int64_t until_ns) {
+    while (datagram.measured_s < duration_s && datagram.arrival_ns <= until_ns) {
+      writer->write_datagram(datagram.arrival_ns, datagram.bytes);
+      ++counts.datagrams;
+      tracker.next(datagram);
+    }
+  };
+
+  FrameBatches batches(world);
+  const auto frames = static_cast<std::uint32_t>(duration_s * world.options.camera_rate_hz);
+  for (std::uint32_t first = 0; first < frames;) {
+    for (const SimulatedFrame& frame : batches.make(first, frames)) {
+      write_datagrams_until(frame.arrival_ns);
+      writer->write_frame(frame.timestamp_ns, frame.arrival_ns, frame.number, world.camera.width,
+                          world.camera.height, frame.jpeg);
+      ++counts.frames;
+      ++first;
+    }
+  }
+  write_datagrams_until(std::numeric_limits<std::int64_t>::max());
+  writer->close();
+  return counts;
+}
+
+}  // namespace handeye::simulator

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "daemon/geometry/camera_model.hpp"
+#include "daemon/geometry/pose.hpp"
+#include "drivers/simulator/relief.hpp"
+#include "drivers/simulator/texture.hpp"
+
+namespace handeye::simulator {
+
+/// What is looked at: relief and albedo, in surface coordinates (mm, z towards the viewer).
+struct Surface {
+  explicit Surface(std::uint64_t seed) : relief(seed), texture(seed) {}
+
+  Relief relief;
+  Texture texture;
+};
+
+struct ImagingOptions {
+  double nominal_distance_mm{80.0};  ///< where the light's brightness is set for
+  double noise_grey{1.5};            ///< standard deviation of the image noise, grey levels
+};
+
+/// Draws what the endoscope sees by casting one ray a pixel, through the lens as it is, against the
+/// surface as it is: the reprojection of a surface point is where its texture shows, to well below
+/// 0.01 px. The light sits at the tip and falls off with the square of the distance.
+///
+/// One thread a renderer; several may share a surface, which must outlive them.
+class Renderer {
+ public:
+  /// Throws UsageError when a pixel of the camera has no ray (distortion not invertible).
+  Renderer(const Surface& surface, const CameraModel& camera, std::uint64_t seed,
+           const ImagingOptions& options = {});
+
+  /// Draws a CV_8UC1 image; memory is kept when the size stays. The eye must be above the surface
+  /// and look down on it. `frame_number` picks the image noise.
+  void render(const Pose& surface_from_eye, std::uint64_t frame_number, cv::Mat& grey);
+
+  /// Depth (z in the eye frame, mm) of every pixel of the last image.
+  const cv::Mat1f& depth_mm() const { return depth_mm_; }
+
+ private:
+  /// Where the rays start and how to turn them into surface coordinates, in single precision.
+  struct View {
+    Eigen::Array4f origin, x_axis, y_axis, z_axis;
+  };
+
+  void render_row(int row, const View& view, const float* noise, std::uint8_t* out);
+  float depth_of_first_pixel(int row, const View& view) const;
+
+  const Surface* surface_;
+  CameraModel camera_;
+  ImagingOptions options_;
+  cv::Mat2f rays_;      ///< x/z and y/z of every pixel
+  cv::Mat1f depth_mm_;  ///< also the start value for the neighbours below and to the right
+  std::vector<float> noise_;
+  std::uint64_t seed_;
+};
+
+}  // namespace handeye::simulator

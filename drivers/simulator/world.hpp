@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "daemon/geometry/camera_model.hpp"
+#include "daemon/geometry/pose.hpp"
+#include "drivers/simulator/motion.hpp"
+#include "drivers/simulator/renderer.hpp"
+
+namespace handeye::simulator {
+
+/// What the user chooses; everything else is drawn from the seed.
+struct SimulatorOptions {
+  std::uint64_t seed{0};
+  MotionKind motion{MotionKind::kFree};
+  int width{640};   ///< px
+  int height{480};  ///< px
+  double camera_rate_hz{25.0};
+  double tracker_rate_hz{60.0};
+  double tracker_noise_deg{0.06};  ///< standard deviation per axis
+  double tracker_noise_mm{0.15};   ///< standard deviation per axis
+  int body_id{0};                  ///< the wire's number
+  int jpeg_quality{90};            ///< 1..100; less where a frame would become too large
+};
+
+/// Everything that is true in a simulation. The host's clock counts ns; simulated time is seconds
+/// since the start.
+struct World {
+  /// Draws a world whose simulation starts at this instant of the host's clock.
+  World(const SimulatorOptions& options, std::int64_t start_ns);
+
+  Pose room_from_eye(double time_s) const;
+  Pose room_from_hand(double time_s) const;
+
+  /// The tracker's clock, seconds of its day in [0, 86400).
+  double tracker_clock_s(double time_s) const;
+
+  std::int64_t host_ns(double time_s) const;
+
+  /// What must be added to a tracker time stamp (which the clock model has mapped to the host's
+  /// clock, constant latency included) to get the camera's stamp of the same instant.
+  double time_offset_s() const { return camera_delay_s - tracker_latency_s; }
+
+  SimulatorOptions options;
+  std::int64_t start_ns;
+  CameraModel camera;
+  Surface surface;
+  Motion motion;
+  Pose room_from_surface;
+  Pose hand_from_eye;
+  double tracker_latency_s{0};      ///< constant part, measurement to arrival
+  double tracker_jitter_s{0.001};   ///< mean of what comes on top, never negative
+  double tracker_clock_start_s{0};  ///< what the tracker's clock shows at the start
+  double tracker_clock_drift{0};    ///< its rate against the host's, minus 1
+  double camera_delay_s{0};         ///< mid-exposure to the frame's time stamp
+};
+
+}  // namespace handeye::simulator

@@ -27,10 +27,11 @@ enum class GrabStatus {
 
 /// Counted since construction; survives close() and open().
 struct CameraCounters {
-  std::uint64_t received{0};   ///< frames handed out
-  std::uint64_t dropped{0};    ///< gaps in the device's own count
-  std::uint64_t malformed{0};  ///< frames that could not be decoded or had a wrong size
-  std::uint64_t opened{0};     ///< successful open() calls
+  std::uint64_t received{0};       ///< frames handed out
+  std::uint64_t dropped{0};        ///< gaps in the device's own count
+  std::uint64_t dropped_queue{0};  ///< lost in this process: a queue was full
+  std::uint64_t malformed{0};      ///< frames that could not be decoded or had a wrong size
+  std::uint64_t opened{0};         ///< successful open() calls
 };
 
 /// A source of frames. One thread opens, grabs and closes; nothing here is shared between threads.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <handeye/image_t.hpp>
 #include <optional>
 #include <string>
+
+#include <handeye/image_t.hpp>
 
 #include "drivers/image/encoded_image.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <handeye/version.hpp>
 
 #include "client/cli/commands.hpp"
 #include "client/cli/terminal.hpp"
@@ -55,7 +56,7 @@ int run(const Action& action) {
 int main(int argc, char** argv) {
   CLI::App app("Talks to handeyed, the hand-eye calibration service for tracked endoscopes.",
                "handeye");
-  app.set_version_flag("--version", "handeye " HANDEYE_VERSION, "print the version");
+  app.set_version_flag("--version", "handeye " + std::string(kVersion), "print the version");
   app.require_subcommand(1);
   Action action;
   add_calibrate_command(app, action);
@@ -63,9 +64,7 @@ int main(int argc, char** argv) {
   add_watch_command(app, action);
   add_cancel_command(app, action);
   add_pose_command(app, action);
-#ifdef HANDEYE_CLI_RECORD
   add_record_command(app, action);
-#endif
 #ifdef HANDEYE_CLI_REPLAY
   add_replay_command(app, action);
 #endif

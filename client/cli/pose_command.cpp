@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
-#include <handeye/camera_pose_t.hpp>
 #include <memory>
 #include <vector>
 
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/format.h>
+#include <handeye/camera_pose_t.hpp>
 
 #include "client/cli/commands.hpp"
 #include "client/cli/interrupt.hpp"

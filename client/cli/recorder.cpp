@@ -62,8 +62,9 @@ void Recorder::write_datagram(const datagram_t& datagram) {
 const std::vector<std::uint8_t>& Recorder::as_jpeg(const CheckedImage& image) {
   if (image.pixel_format == image_t::JPEG) return image.data;
   const EncodedImage grey = encoded_image(image);
+  constexpr std::size_t kNoPadding = cv::Mat::AUTO_STEP;
   const std::size_t stride =
-      grey.stride_bytes > 0 ? static_cast<std::size_t>(grey.stride_bytes) : cv::Mat::AUTO_STEP;
+      grey.stride_bytes > 0 ? static_cast<std::size_t>(grey.stride_bytes) : kNoPadding;
   // OpenCV has no matrix of constant bytes; imencode only reads.
   const cv::Mat view(grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.bytes.data()),
                      stride);

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <handeye/datagram_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <handeye/datagram_t.hpp>
 
 #include "client/cli/stream_counter.hpp"
 #include "daemon/geometry/camera_model.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <handeye/device_status_t.hpp>
-#include <handeye/status_t.hpp>
 #include <string>
 #include <string_view>
 
+#include <handeye/device_status_t.hpp>
+#include <handeye/status_t.hpp>
 #include <nlohmann/json.hpp>
 
 #include "client/cli/terminal.hpp"

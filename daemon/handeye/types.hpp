@@ -9,27 +9,28 @@
 #include "daemon/geometry/pose.hpp"
 
 /// Hand-eye calibration. Frames: room (the tracker's world), hand (the tracked body), eye (camera),
-/// scene (the reconstruction's world). The seed's X = T_HE = eye_from_hand; users get hand_from_eye.
+/// scene (the reconstruction's world). The seed's X = T_HE = eye_from_hand; users get
+/// hand_from_eye.
 namespace handeye {
 
 /// Hand and eye at one instant.
 struct PosePair {
-  Pose room_from_hand{Pose::Identity()};   ///< mm
-  Pose eye_from_scene{Pose::Identity()};   ///< scene units
+  Pose room_from_hand{Pose::Identity()};  ///< mm
+  Pose eye_from_scene{Pose::Identity()};  ///< scene units
 };
 
 /// Relative movement between two instants i and j (math.md, notation).
 struct Movement {
-  Pose hand_j_from_hand_i{Pose::Identity()};   ///< H; mm
-  Pose eye_j_from_eye_i{Pose::Identity()};     ///< E; scene units
+  Pose hand_j_from_hand_i{Pose::Identity()};  ///< H; mm
+  Pose eye_j_from_eye_i{Pose::Identity()};    ///< E; scene units
 };
 
 /// Movement between two pose pairs.
 Movement movement_between(const PosePair& i, const PosePair& j);
 
 struct HandEyeSolution {
-  Pose hand_from_eye{Pose::Identity()};   ///< mm
-  double scale_units_per_mm{1.0};         ///< s: scene units per mm
+  Pose hand_from_eye{Pose::Identity()};  ///< mm
+  double scale_units_per_mm{1.0};        ///< s: scene units per mm
 };
 
 /// A method that solves from movements; nothing when the data do not determine the answer.
@@ -38,7 +39,7 @@ using MovementSolver = std::optional<HandEyeSolution> (*)(std::span<const Moveme
 struct Method {
   std::string_view name;
   MovementSolver solve;
-  std::string_view source;   ///< paper and equation
+  std::string_view source;  ///< paper and equation
 };
 
 /// Every method with unknown scale, in the order in which results list them.

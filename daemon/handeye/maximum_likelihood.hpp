@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "daemon/handeye/types.hpp"
+
+namespace handeye {
+
+/// Hand and eye at one instant, and how the hand was moving.
+struct HandEyeObservation {
+  PosePair poses;
+  Eigen::Vector3d hand_angular_velocity{Eigen::Vector3d::Zero()};  ///< in the hand frame [rad/s]
+  Eigen::Vector3d hand_velocity{Eigen::Vector3d::Zero()};  ///< of its origin, in the room [mm/s]
+};
+
+struct MaximumLikelihoodOptions {
+  PoseNoise noise;                   ///< assumed; the start where it is estimated
+  bool estimate_noise{true};         ///< from the residuals (variance components)
+  bool estimate_scale{true};         ///< false: the start's scale is exact
+  bool estimate_time_offset{false};  ///< needs velocities
+  double time_offset_prior_s{0.05};  ///< standard deviation of the correction before the data
+  double huber{4.0};  ///< of a whitened residual's norm (6 dof): touches 1.4 % of inliers
+  int rounds{4};      ///< of solving and estimating the noise
+};
+
+struct MaximumLikelihoodResult {
+  HandEyeSolution solution;
+  Pose room_from_scene{Pose::Identity()};  ///< scene in mm
+  /// To be added to the time offset that the hand poses were looked up with (first order: look up
+  /// again after more than some milliseconds).
+  double time_offset_correction_s{0};
+  double time_offset_sigma_s{0};
+  /// Of (w [rad], dt [mm]) in R = Exp(w) R_estimate, t = t_estimate + dt of hand_from_eye. Finite
+  /// and huge where the data do not determine the answer.
+  Matrix6d covariance{Matrix6d::Zero()};
+  double log_scale_sigma{0};
+  std::size_t poses_used{0};        ///< without the outliers
+  double chi2_per_dof{0};           ///< against the assumed noise
+  PoseNoise noise;                  ///< as estimated, or as assumed
+  double correlation_inflation{1};  ///< of the covariance, for errors correlated in time
+
+  double sigma_rotation_deg() const;    ///< square root of the trace of w's block
+  double sigma_translation_mm() const;  ///< square root of the trace of dt's block
+};
+
+/// Hand-eye with unknown scale over poses, not pairs (math.md section 4): for every pose k
+///   room_from_hand_k * hand_from_eye = room_from_scene * scene_from_eye_k (scaled by 1/s),
+/// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene, s and,
+/// if wanted, a correction of the time offset. `observations` in order of time. One thread: the
+/// same answer every time. Nothing for fewer than four poses or numbers that are not finite.
+std::optional<MaximumLikelihoodResult> maximum_likelihood(
+    std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
+    const MaximumLikelihoodOptions& options = {});
+
+/// The same from every start that the linear methods offer; the likeliest.
+std::optional<MaximumLikelihoodResult> maximum_likelihood(
+    std::span<const HandEyeObservation> observations, const MaximumLikelihoodOptions& options = {});
+
+}  // namespace handeye

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "daemon/handeye/types.hpp"
+
+namespace handeye {
+
+struct SelectionOptions {
+  std::size_t max_poses{200};  ///< longer sequences are thinned evenly
+  std::size_t max_movements{500};
+  std::size_t enough{50};  ///< below so many the smallest angle is halved
+  double min_angle_deg{15};
+  double lowest_min_angle_deg{1};  ///< smaller turns say nothing, however few there are
+  double max_angle_deg{175};  ///< beyond it the axis is ambiguous; dropped where others are left
+  double min_tolerance_deg{0.5};  ///< hand and eye angles of a movement may always differ so much
+  double tolerance_factor{4};     ///< and by so many times their median difference
+};
+
+/// Movements between pairs (i, j) of the whole sequence rather than neighbours (Schmidt, Vogt,
+/// Niemann 2004): large angles, axes spread, poses used evenly, their number bounded; hand and eye
+/// must turn by the same angle. Deterministic. Pairs that are not finite are left out.
+std::vector<Movement> select_movements(std::span<const PosePair> poses,
+                                       const SelectionOptions& options = {});
+
+}  // namespace handeye

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/selection.hpp"
+
+#include <random>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "tests/unit/handeye/synthetic.hpp"
+
+namespace handeye {
+namespace {
+
+std::vector<PosePair> free_hand(int count, std::uint32_t seed = 1) {
+  return synthetic::record(synthetic::scope(), synthetic::free_hand, count,
+                           synthetic::tracker_and_camera(), seed)
+      .poses();
+}
+
+double angle_deg(const Movement& movement) {
+  return deg_from_rad(rotation_angle_rad(movement.hand_j_from_hand_i.linear()));
+}
+
+TEST(Movements, AreWhatTheirNamesSay) {
+  const auto poses = free_hand(2);
+  const Movement movement = movement_between(poses[0], poses[1]);
+  EXPECT_TRUE((poses[1].room_from_hand * movement.hand_j_from_hand_i)
+                  .isApprox(poses[0].room_from_hand, 1e-12));
+  EXPECT_TRUE((movement.eye_j_from_eye_i * poses[0].eye_from_scene)
+                  .isApprox(poses[1].eye_from_scene, 1e-12));
+}
+
+TEST(Selection, IsBoundedHoweverLongTheSequence) {
+  EXPECT_LE(select_movements(free_hand(100)).size(), 500U);
+  const auto movements = select_movements(free_hand(1500));
+  EXPECT_LE(movements.size(), 500U);
+  EXPECT_GT(movements.size(), 300U);
+}
+
+TEST(Selection, TakesLargeAnglesAboutAllAxes) {
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Movement& movement : select_movements(free_hand(300))) {
+    EXPECT_GE(angle_deg(movement), 15.0);
+    EXPECT_LE(angle_deg(movement), 175.0);
+    const Eigen::Vector3d axis = log_so3(movement.hand_j_from_hand_i.linear()).normalized();
+    scatter += axis * axis.transpose();
+  }
+  const Eigen::Vector3d spread =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues();
+  EXPECT_GT(spread[0], 0.1 * spread.sum());
+}
+
+TEST(Selection, LowersTheSmallestAngleWhenTooFewAreLarger) {
+  std::mt19937 generator(2);
+  const auto poses = synthetic::random_poses(synthetic::scope(), generator, 20, rad_from_deg(4));
+  const auto movements = select_movements(poses);
+  EXPECT_GE(movements.size(), 50U);
+  for (const Movement& movement : movements) EXPECT_GE(angle_deg(movement), 1.0);
+}
+
+TEST(Selection, LeavesOutWhatDoesNotTurnAlike) {
+  auto poses = free_hand(100);
+  for (std::size_t k = 10; k < poses.size(); k += 10) {
+    poses[k].eye_from_scene.linear() *= exp_so3({0.3, 0.2, 0});
+  }
+  for (const Movement& movement : select_movements(poses)) {
+    const double eye_deg = deg_from_rad(rotation_angle_rad(movement.eye_j_from_eye_i.linear()));
+    EXPECT_LT(std::abs(eye_deg - angle_deg(movement)), 2.0);
+  }
+}
+
+TEST(Selection, IsTheSameEveryTime) {
+  const auto a = select_movements(free_hand(300));
+  const auto b = select_movements(free_hand(300));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].hand_j_from_hand_i.matrix(), b[k].hand_j_from_hand_i.matrix());
+  }
+}
+
+TEST(Selection, OfNothingIsNothing) {
+  EXPECT_TRUE(select_movements({}).empty());
+  EXPECT_TRUE(select_movements(free_hand(1)).empty());
+}
+
+}  // namespace
+}  // namespace handeye

@@ -16,6 +16,9 @@ std::int64_t clock_ns(clockid_t clock);
 /// stamp is short, so slewing of REALTIME does not matter. Should REALTIME be stepped within it the
 /// result is held between the previous arrival and now, for a socket's queue is in order and
 /// nothing arrives in the future.
+///
+/// The kernel starts stamping some moments after the machine's first socket asks for it; datagrams
+/// before that are stamped when they are fetched.
 class ArrivalClock {
  public:
   /// Reads both clocks. Call it after the stamps were taken, before to_monotonic().

@@ -37,8 +37,8 @@ Target read_flystick(Scanner& line, Flystick& flystick, LineMemory& memory) {
       !line.close_block() || !read_position(line, position_mm) || !read_matrix(line, matrix)) {
     return Target::kFailed;
   }
-  flystick.buttons = memory.buttons.take();
-  flystick.joysticks = memory.joysticks.take();
+  if (buttons > 0) flystick.buttons = memory.buttons.take();
+  if (joysticks > 0) flystick.joysticks = memory.joysticks.take();
   flystick.joysticks.resize(static_cast<std::size_t>(joysticks));
   if (!line.open_block() || !read_buttons(line, buttons, flystick.buttons) ||
       !line.read(std::span<double>(flystick.joysticks)) || !line.close_block()) {

@@ -31,7 +31,7 @@ Target read_human(Scanner& line, HumanModel& human, LineContext& context) {
       !line.close_block()) {
     return Target::kFailed;
   }
-  human.joints = context.memory.joints.take();
+  if (joint_count > 0) human.joints = context.memory.joints.take();
   ListUpdate<Joint> update(human.joints, context);
   for (std::int32_t i = 0; i < joint_count; ++i) {
     const Target joint = read_joint(line, update.append());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -14,9 +15,12 @@ namespace handeye::dtrack {
 template <typename List>
 class ListPool {
  public:
-  /// An empty list, with memory if there is any to be had.
+  /// An empty list, with memory if there is any to be had. Take one only to put something in.
   List take() {
-    if (spares_.empty()) return {};
+    if (spares_.empty()) {
+      spares_.reserve(++lists_made_);  // so that giving it back will need no memory
+      return {};
+    }
     List list = std::move(spares_.back());
     spares_.pop_back();
     return list;
@@ -30,6 +34,7 @@ class ListPool {
 
  private:
   std::vector<List> spares_;
+  std::size_t lists_made_{0};
 };
 
 /// What a parser keeps from datagram to datagram: memory, never content.

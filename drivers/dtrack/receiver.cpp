@@ -85,8 +85,7 @@ Receiver::Link::Link(const ReceiverOptions& options)
   }
 }
 
-Receiver::Receiver(const ReceiverOptions& options)
-    : link_(std::make_unique<Link>(options)) {
+Receiver::Receiver(const ReceiverOptions& options) : link_(std::make_unique<Link>(options)) {
   port_ = link_->socket.port();
   send_opener(clock_ns(CLOCK_MONOTONIC));
 }

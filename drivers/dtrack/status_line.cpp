@@ -53,6 +53,9 @@ Target read_camera(Scanner& line, CameraStatus& camera) {
 bool read_cameras(Scanner& line, SystemStatus& status, LineContext& context) {
   std::int32_t count = 0;
   if (!line.read_count(count, kMaxCameras) || !read_value_count(line, kCameraValues)) return false;
+  if (count > 0 && status.camera_status.empty()) {
+    status.camera_status = context.memory.camera_status.take();
+  }
   ListUpdate<CameraStatus> update(status.camera_status, context);
   for (std::int32_t i = 0; i < count; ++i) {
     const Target camera = read_camera(line, update.append());
@@ -86,7 +89,6 @@ bool read_groups(Scanner& line, SystemStatus& status, LineContext& context) {
 
 bool read_st(Scanner& line, LineContext& context) {
   SystemStatus status;
-  status.camera_status = context.memory.camera_status.take();
   const bool good = read_groups(line, status, context);
   if (good) {
     if (context.frame.system_status) release(*context.frame.system_status, context.memory);

@@ -36,7 +36,7 @@ Target read_tool(Scanner& line, MeasurementTool& tool, LineMemory& memory) {
       !line.close_block() || !read_position(line, position_mm) || !read_matrix(line, matrix)) {
     return Target::kFailed;
   }
-  tool.buttons = memory.buttons.take();
+  if (buttons > 0) tool.buttons = memory.buttons.take();
   if (!line.open_block() || !read_buttons(line, buttons, tool.buttons) || !line.close_block() ||
       !read_tip_covariance(line, tool.tip_covariance_mm2)) {
     return Target::kFailed;
@@ -55,7 +55,7 @@ Target read_old_tool(Scanner& line, MeasurementTool& tool, LineMemory& memory) {
       !read_matrix(line, matrix)) {
     return Target::kFailed;
   }
-  tool.buttons = memory.buttons.take();
+  if (word != 0) tool.buttons = memory.buttons.take();
   append_buttons(word, std::bit_width(word), tool.buttons);
   return set_pose(matrix, position_mm, tool);
 }

@@ -21,8 +21,9 @@ struct MaximumLikelihoodOptions {
   bool estimate_scale{true};         ///< false: the start's scale is exact
   bool estimate_time_offset{false};  ///< needs velocities
   double time_offset_prior_s{0.05};  ///< standard deviation of the correction before the data
-  double huber{4.0};  ///< of a whitened residual's norm (6 dof): touches 1.4 % of inliers
-  int rounds{4};      ///< of solving and estimating the noise
+  double huber{4.0};   ///< of a whitened residual's norm (6 dof): touches 1.4 % of inliers
+  double reject{6.0};  ///< poses beyond this norm are left out in the end; 0: none
+  int rounds{4};       ///< of solving and estimating the noise
 };
 
 struct MaximumLikelihoodResult {

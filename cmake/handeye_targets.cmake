@@ -6,7 +6,8 @@ add_library(handeye_build_options INTERFACE)
 target_include_directories(handeye_build_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(
   handeye_build_options
-  INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Werror)
+  # Designated initialisers leave out what has a default: that is their point.
+  INTERFACE -Wno-missing-field-initializers -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Werror)
 if(HANDEYE_SANITIZE)
   target_compile_options(handeye_build_options INTERFACE -fsanitize=${HANDEYE_SANITIZE} -fno-omit-frame-pointer
                                                          -fno-sanitize-recover=all)

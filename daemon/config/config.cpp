@@ -82,7 +82,8 @@ void read_tracker(Section section, Config::Tracker& tracker) {
   int port = tracker.port;
   section.read("port", port, 0, 65535);
   tracker.port = static_cast<std::uint16_t>(port);
-  read_address(section, "interface", tracker.interface);
+  read_address(section, "bind_address", tracker.bind_address);
+  section.read("interface", tracker.interface);
   read_address(section, "multicast_group", tracker.multicast_group);
   read_address(section, "controller", tracker.controller);
   section.read("body_id", tracker.body_id, 0, 999);

@@ -18,11 +18,12 @@ struct Config {
   } lcm;
 
   struct Tracker {
-    std::uint16_t port{5000};         ///< UDP port the tracker sends to
-    std::string interface;            ///< address of the network interface to listen on; empty: all
-    std::string multicast_group;      ///< empty: the tracker sends to this host alone
-    std::string controller;           ///< address of the tracker's controller; empty: accept any
-    int body_id{0};                   ///< the body on the scope, the wire's number
+    std::uint16_t port{5000};     ///< UDP port the tracker sends to
+    std::string bind_address;     ///< local address to listen on; empty: all
+    std::string interface;        ///< network interface to listen and join on, "eth1"; empty: all
+    std::string multicast_group;  ///< empty: the tracker sends to this host alone
+    std::string controller;       ///< address of the tracker's controller; empty: accept any
+    int body_id{0};               ///< the body on the scope, the wire's number
     double noise_rotation_deg{0.06};  ///< standard deviation per axis
     double noise_translation_mm{0.15};
   } tracker;

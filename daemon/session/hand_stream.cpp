@@ -7,13 +7,18 @@ namespace handeye {
 
 std::optional<HandSample> HandStream::take(const Datagram& datagram) {
   if (parser_.parse(datagram.bytes, frame_) == dtrack::ParseStatus::kRejected) return std::nullopt;
-  HandSample sample;
-  sample.timestamp_ns = host_time_ns(datagram.arrival_ns);
+  const std::int64_t timestamp_ns = host_time_ns(datagram.arrival_ns);
   if (body_id_ < 0) {
     const auto seen = std::ranges::find_if(frame_.bodies, &dtrack::Body::tracked);
     if (seen != frame_.bodies.end()) body_id_ = seen->id;
   }
-  const dtrack::Body* body = frame_.find_body(body_id_);
+  return sample_of(body_id_, timestamp_ns);
+}
+
+HandSample HandStream::sample_of(int body_id, std::int64_t timestamp_ns) const {
+  HandSample sample;
+  sample.timestamp_ns = timestamp_ns;
+  const dtrack::Body* body = frame_.find_body(body_id);
   if (body != nullptr && body->tracked) {
     sample.tracked = true;
     sample.room_from_hand = body->room_from_body;
@@ -34,9 +39,11 @@ std::int64_t HandStream::host_time_ns(std::int64_t arrival_ns) {
     case DeviceClock::kUnixTime:
       return clock_.observe(frame_.unix_time->seconds + 1e-6 * frame_.unix_time->microseconds,
                             arrival_ns);
-    case DeviceClock::kSecondsOfDay: return clock_.observe(*frame_.seconds_of_day, arrival_ns);
+    case DeviceClock::kSecondsOfDay:
+      return clock_.observe(*frame_.seconds_of_day, arrival_ns);
     case DeviceClock::kNone:
-    case DeviceClock::kUnknown: break;
+    case DeviceClock::kUnknown:
+      break;
   }
   return arrival_ns;
 }

@@ -10,8 +10,8 @@
 
 namespace handeye {
 
-/// From the tracker's datagrams to samples of the hand on the host's clock: parser, then clock model.
-/// The same in the live daemon and in a replay. One thread.
+/// From the tracker's datagrams to samples of the hand on the host's clock: parser, then clock
+/// model. The same in the live daemon and in a replay. One thread.
 class HandStream {
  public:
   /// `body_id`: the body on the scope, the wire's number; -1: the first body that is seen tracked.
@@ -20,6 +20,9 @@ class HandStream {
   /// Nothing when the datagram was rejected. A body that is absent is hidden: `tracked` is false.
   /// Without a device time in the datagram (no ts, no ts2) the arrival stands for it.
   std::optional<HandSample> take(const Datagram& datagram);
+
+  /// Another body of the last datagram, as a sample.
+  HandSample sample_of(int body_id, std::int64_t timestamp_ns) const;
 
   /// What the last datagram said; empty after a rejected one.
   const dtrack::Frame& frame() const { return frame_; }

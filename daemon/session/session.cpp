@@ -40,9 +40,17 @@ Session::Command Session::on_request(const Request& request) {
     return Command::kNothing;
   }
   Command command = Command::kNothing;
-  acks_.push_front(decide(request, command));
-  if (acks_.size() > kRememberedAcks) acks_.pop_back();
+  remember(decide(request, command));
   return command;
+}
+
+void Session::refuse(const Ack& ack) {
+  if (std::ranges::find(acks_, ack.request_id, &Ack::request_id) == acks_.end()) remember(ack);
+}
+
+void Session::remember(const Ack& ack) {
+  acks_.push_front(ack);
+  if (acks_.size() > kRememberedAcks) acks_.pop_back();
 }
 
 Ack Session::decide(const Request& request, Command& command) {

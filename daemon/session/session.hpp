@@ -61,6 +61,9 @@ class Session {
   /// describe is carried out once more, for its answer may have been lost.
   Command on_request(const Request& request);
 
+  /// Remembers a request that could not even be read, for STATUS to say so.
+  void refuse(const Ack& ack);
+
   /// The final solve has begun.
   void on_solving();
   /// The running calibration ended; its result is kept for describe.
@@ -77,6 +80,7 @@ class Session {
   Ack decide(const Request& request, Command& command);
   Ack decide_start(const Request& request, Command& command);
   Ack decide_end(const Request& request, Command& command);
+  void remember(const Ack& ack);
   bool running() const;
 
   SessionDefaults defaults_;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <handeye/version.hpp>
+#include <opencv2/core.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/config/config.hpp"
+#include "daemon/service/event_loop.hpp"
+#include "daemon/service/service.hpp"
+#include "protocol/exit_codes.hpp"
+
+namespace {
+
+using handeye::ExitCode;
+
+struct CommandLine {
+  std::string config_file{"/etc/handeyed/handeyed.toml"};
+  bool check_config{false};
+};
+
+void set_up_logging(const std::string& level) {
+  auto logger = spdlog::stderr_color_mt("handeyed");
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(logger);
+  // Under systemd the journal adds time and name.
+  spdlog::set_pattern(std::getenv("JOURNAL_STREAM") != nullptr ? "%l: %v"
+                                                               : "%Y-%m-%d %H:%M:%S.%e %^%l%$: %v");
+}
+
+int run(const CommandLine& command_line) {
+  const handeye::Config config = handeye::load_config(command_line.config_file);
+  if (command_line.check_config) {
+    handeye::read_camera_files(config.camera);
+    fmt::print("{}: ok\n", command_line.config_file);
+    return static_cast<int>(ExitCode::kOk);
+  }
+  set_up_logging(config.log.level);
+  handeye::EventLoop::block_signals({SIGTERM, SIGINT});
+  // The threads of the service are the parallelism; OpenCV's own would steal from the sockets.
+  cv::setNumThreads(1);
+  handeye::Service service(config);
+  service.run();
+  return static_cast<int>(ExitCode::kOk);
+}
+
+int fail(ExitCode code, const std::exception& error) {
+  fmt::print(stderr, "handeyed: {}\n", error.what());
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line;
+  CLI::App app{"Hand-eye calibration service for tracked endoscopes", "handeyed"};
+  app.set_version_flag("--version", std::string(handeye::kVersion));
+  app.add_option("-c,--config", command_line.config_file, "Configuration file (TOML)")
+      ->capture_default_str();
+  app.add_flag("--check-config", command_line.check_config,
+               "Check the configuration and the files it names, then exit");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  }
+  try {
+    return run(command_line);
+  } catch (const handeye::UsageError& error) {
+    return fail(ExitCode::kUsage, error);
+  } catch (const handeye::InputError& error) {
+    return fail(ExitCode::kInput, error);
+  } catch (const std::exception& error) {
+    return fail(ExitCode::kInput, error);
+  }
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/camera_thread.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "protocol/bus.hpp"
+
+namespace handeye {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Room for the vision thread to be busy for a quarter of a second at 30 Hz.
+constexpr std::size_t kFramesInFlight = 8;
+constexpr milliseconds kGrabTimeout{200};
+constexpr milliseconds kFirstPause{250};
+constexpr milliseconds kLongestPause{2000};
+
+/// Sleeps, but not beyond a request to stop.
+void pause(const std::stop_token& stop, milliseconds duration) {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  wake.wait_for(lock, stop, duration, [] { return false; });
+}
+
+}  // namespace
+
+CameraThread::CameraThread(std::unique_ptr<Camera> camera, const CameraModel& model,
+                           FrameTaken frame_taken)
+    : camera_(std::move(camera)),
+      model_(model),
+      frame_taken_(std::move(frame_taken)),
+      frames_(kFramesInFlight) {
+  health_.set(device_status_t::WAITING, camera_->description());
+}
+
+void CameraThread::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void CameraThread::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    if (open(stop)) stream(stop);
+    camera_->close();
+  }
+}
+
+bool CameraThread::open(const std::stop_token& stop) {
+  std::string last_problem;
+  for (milliseconds wait = kFirstPause; !stop.stop_requested();
+       wait = std::min(2 * wait, kLongestPause)) {
+    const auto problem = camera_->open();
+    if (!problem) {
+      health_.set(device_status_t::WAITING,
+                  fmt::format("{}: no frame yet", camera_->description()));
+      spdlog::info("camera: opened {}", camera_->description());
+      return true;
+    }
+    // Said once, not at every attempt.
+    if (*problem != last_problem) spdlog::warn("camera: {}", *problem);
+    last_problem = *problem;
+    health_.set(device_status_t::ABSENT, *problem);
+    pause(stop, wait);
+  }
+  return false;
+}
+
+void CameraThread::stream(const std::stop_token& stop) {
+  bool streaming = false;
+  while (!stop.stop_requested()) {
+    if (next_ == nullptr) next_ = frames_.acquire();
+    Frame& frame = next_ != nullptr ? *next_ : overflow_;
+    const GrabStatus status = camera_->grab(frame, kGrabTimeout);
+    count();
+    if (status == GrabStatus::kLost || status == GrabStatus::kEnd) {
+      spdlog::warn("camera: lost {}", camera_->description());
+      health_.set(device_status_t::ABSENT,
+                  fmt::format("{}: lost, trying again", camera_->description()));
+      return;
+    }
+    if (status != GrabStatus::kFrame || !has_right_size(frame)) continue;
+    health_.last_ns = monotonic_ns();
+    if (!streaming) health_.set(device_status_t::STREAMING, camera_->description());
+    streaming = true;
+    hand_on(frame);
+  }
+}
+
+void CameraThread::hand_on(const Frame& frame) {
+  frame_taken_({frame.timestamp_ns, frame.sequence});
+  if (next_ != nullptr) {
+    frames_.commit(next_);
+    next_ = nullptr;
+  } else {
+    frames_.count_drop();
+  }
+}
+
+bool CameraThread::has_right_size(const Frame& frame) {
+  if (frame.grey.cols == model_.width && frame.grey.rows == model_.height) return true;
+  if (wrong_size_++ == 0) {
+    const std::string text = fmt::format(
+        "{}: sends {}x{}, but the intrinsics are for {}x{}; change one of them",
+        camera_->description(), frame.grey.cols, frame.grey.rows, model_.width, model_.height);
+    spdlog::error("camera: {}", text);
+    health_.set(device_status_t::FAILED, text);
+  }
+  return false;
+}
+
+void CameraThread::count() {
+  const CameraCounters counters = camera_->counters();
+  health_.received = static_cast<std::int64_t>(counters.received);
+  health_.dropped = static_cast<std::int64_t>(counters.dropped);
+  health_.malformed = static_cast<std::int64_t>(counters.malformed) + wrong_size_;
+  health_.restarts = counters.opened > 0 ? static_cast<std::int64_t>(counters.opened) - 1 : 0;
+  health_.dropped_queue = static_cast<std::int64_t>(frames_.dropped());
+}
+
+}  // namespace handeye

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "daemon/geometry/camera_model.hpp"
+#include "daemon/service/device_health.hpp"
+#include "daemon/service/exchange.hpp"
+#include "daemon/service/pose_publisher.hpp"
+#include "drivers/camera.hpp"
+
+namespace handeye {
+
+/// Keeps the camera open, whatever happens to it, and hands its frames on: opens, grabs, and after
+/// a loss opens again with growing pauses. Frames that are not of the intrinsics' size are refused.
+class CameraThread {
+ public:
+  using FrameTaken = std::function<void(const FrameStamp&)>;
+
+  /// `frame_taken` is called in the camera's thread for every good frame.
+  CameraThread(std::unique_ptr<Camera> camera, const CameraModel& model, FrameTaken frame_taken);
+
+  void start();
+
+  /// The consumer's end of the frames.
+  Exchange<Frame>& frames() { return frames_; }
+  const DeviceHealth& health() const { return health_; }
+
+ private:
+  void run(const std::stop_token& stop);
+  bool open(const std::stop_token& stop);
+  void stream(const std::stop_token& stop);
+  void hand_on(const Frame& frame);
+  bool has_right_size(const Frame& frame);
+  void count();
+
+  std::unique_ptr<Camera> camera_;
+  CameraModel model_;
+  FrameTaken frame_taken_;
+  Exchange<Frame> frames_;
+  Frame* next_{nullptr};  ///< acquired, to be filled next; null: all are with the consumer
+  Frame overflow_;        ///< filled then instead: received, and dropped
+  DeviceHealth health_;
+  std::int64_t wrong_size_{0};
+  std::jthread thread_;
+};
+
+}  // namespace handeye

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/device_health.hpp"
+
+#include <fmt/format.h>
+
+namespace handeye {
+namespace {
+
+constexpr std::int64_t kRateWindow_ns = 2'000'000'000;
+
+}  // namespace
+
+device_status_t DeviceStatusReporter::report(const DeviceHealth& health, std::int64_t now_ns) {
+  device_status_t status{};
+  std::tie(status.state, status.text) = health.state();
+  status.received = health.received;
+  status.dropped = health.dropped;
+  status.dropped_queue = health.dropped_queue;
+  status.malformed = health.malformed;
+  status.restarts = health.restarts;
+
+  history_.emplace_back(now_ns, status.received);
+  while (history_.size() > 2 && now_ns - history_[1].first >= kRateWindow_ns) history_.pop_front();
+  const auto [then_ns, received_then] = history_.front();
+  if (now_ns > then_ns) {
+    status.rate_hz = 1e9 * static_cast<double>(status.received - received_then) /
+                     static_cast<double>(now_ns - then_ns);
+  }
+
+  const std::int64_t last_ns = health.last_ns;
+  status.age_s = last_ns == 0 ? -1 : 1e-9 * static_cast<double>(now_ns - last_ns);
+  if (status.state == device_status_t::STREAMING && status.age_s > silent_after_s_) {
+    status.state = device_status_t::SILENT;
+    status.text = fmt::format("{}: nothing for {:.1f} s", status.text, status.age_s);
+  }
+  return status;
+}
+
+}  // namespace handeye

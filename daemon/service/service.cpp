@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/service.hpp"
+
+#include <fmt/format.h>
+#include <handeye/version.hpp>
+#include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
+
+#include "daemon/service/camera_factory.hpp"
+#include "daemon/service/status_message.hpp"
+#include "daemon/session/result_message.hpp"
+#include "drivers/recording/recording.hpp"
+#include "protocol/exit_codes.hpp"
+
+namespace handeye {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kStatusPeriod{200};
+constexpr double kTrackerSilentAfter_s = 1;
+constexpr double kCameraSilentAfter_s = 1;
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  return 1e-9 * static_cast<double>(to_ns - from_ns);
+}
+
+VisionThread::Options vision_options(const Config& config, const CameraFiles& files,
+                                     const Channels& channels) {
+  VisionThread::Options options{.mask = files.mask, .frame_channel = {}};
+  // A camera on LCM is on FRAME already; never publish there beside it.
+  if (config.camera.driver != Config::Camera::Driver::kLcm) options.frame_channel = channels.frame;
+  return options;
+}
+
+SolverThread::Options solver_options(const Config& config, const CameraFiles& files) {
+  SolverThread::Options options{.camera = files.model, .noise = {}};
+  options.noise.hand_rotation_rad = rad_from_deg(config.tracker.noise_rotation_deg);
+  options.noise.hand_translation_mm = config.tracker.noise_translation_mm;
+  options.min_duration_s = config.calibration.min_duration_s;
+  return options;
+}
+
+}  // namespace
+
+CameraFiles read_camera_files(const Config::Camera& config) {
+  CameraFiles files{.model = read_camera_model(config.intrinsics), .mask = {}};
+  if (!config.mask.empty()) files.mask = read_mask(config.mask);
+  const cv::Size size(files.model.width, files.model.height);
+  if (!files.mask.empty() && files.mask.size() != size) {
+    throw InputError(fmt::format("{}: the mask is {}x{}, but {} is for {}x{}", config.mask.string(),
+                                 files.mask.cols, files.mask.rows, config.intrinsics.string(),
+                                 size.width, size.height));
+  }
+  return files;
+}
+
+Service::Service(const Config& config)
+    : config_(config),
+      camera_files_(read_camera_files(config.camera)),
+      channels_(config.lcm.prefix),
+      bus_(config.lcm.url),
+      status_publisher_(bus_, channels_.status),
+      result_publisher_(bus_, channels_.result),
+      session_({.body_id = config.tracker.body_id,
+                .wanted = config.calibration.wanted,
+                .max_duration_s = config.calibration.max_duration_s}),
+      tracker_(config.tracker, bus_, channels_),
+      camera_(make_camera(config, camera_files_.model), camera_files_.model,
+              [this](const FrameStamp& stamp) { tracker_.frame_taken(stamp); }),
+      vision_(camera_.frames(), bus_, vision_options(config, camera_files_, channels_)),
+      solver_(tracker_.hand_samples(), vision_.tracked(), solver_options(config, camera_files_)),
+      tracker_reporter_(kTrackerSilentAfter_s),
+      camera_reporter_(kCameraSilentAfter_s),
+      started_ns_(monotonic_ns()) {
+  bus_.subscribe<request_t>(channels_.request,
+                            [this](const request_t& message) { on_request(message); });
+  loop_.on_readable(bus_.file_descriptor(), [this] { bus_.handle(milliseconds(0)); });
+  loop_.on_readable(solver_.wake_up().file_descriptor(), [this] { on_solver_events(); });
+  loop_.every(kStatusPeriod, [this] { publish_status(); });
+  for (const int signal : {SIGTERM, SIGINT}) {
+    loop_.on_signal(signal, [this] { loop_.exit(); });
+  }
+}
+
+void Service::run() {
+  solver_.start();
+  vision_.start();
+  tracker_.start();
+  camera_.start();
+  say_ready();
+  publish_status();
+  loop_.run();
+  sd_notify(0, "STOPPING=1");
+  spdlog::info("stopping");
+}
+
+void Service::say_ready() {
+  spdlog::info("ready: tracker on UDP port {}, camera {}, LCM {} with prefix {}", tracker_.port(),
+               camera_.health().state().second, config_.lcm.url, config_.lcm.prefix);
+  sd_notifyf(0, "READY=1\nSTATUS=tracker on port %d, prefix %s", tracker_.port(),
+             config_.lcm.prefix.c_str());
+}
+
+void Service::on_request(const request_t& message) {
+  std::string problem;
+  const auto request = read_request(message, problem);
+  if (!request) {
+    spdlog::warn("request {}: {}", message.request_id, problem);
+    session_.refuse({message.request_id, AckCode::kBadRequest, problem});
+  } else {
+    carry_out(session_.on_request(*request), *request);
+  }
+  publish_status();
+}
+
+void Service::carry_out(Session::Command command, const Request& request) {
+  switch (command) {
+    case Session::Command::kNothing:
+      return;
+    case Session::Command::kStart:
+      return start_calibration();
+    case Session::Command::kFinish:
+      return solver_.finish();
+    case Session::Command::kCancel:
+      return solver_.cancel();
+    case Session::Command::kDescribe:
+      return publish_result();
+    case Session::Command::kRecord:
+      break;
+  }
+  const double duration_s =
+      request.max_duration_s > 0 ? request.max_duration_s : config_.calibration.max_duration_s;
+  const std::int64_t until_ns = monotonic_ns() + static_cast<std::int64_t>(1e9 * duration_s);
+  tracker_.record_until(until_ns);
+  vision_.record_until(until_ns);
+}
+
+void Service::start_calibration() {
+  const StartOptions& start = *session_.current();
+  spdlog::info("calibration {}: collecting, body {}, wanted sigma {} deg and {} mm, at most {} s",
+               start.request_id, start.body_id, start.wanted.rotation_deg,
+               start.wanted.translation_mm, start.max_duration_s);
+  collecting_since_ns_ = monotonic_ns();
+  tracker_.begin_collecting(start.body_id);
+  solver_.begin(start, vision_.begin_collecting());
+}
+
+void Service::on_solver_events() {
+  solver_.wake_up().clear();
+  while (auto event = solver_.next_event()) {
+    if (std::holds_alternative<SolverThread::Solving>(*event)) {
+      end_collecting();
+      session_.on_solving();
+    } else {
+      on_result(std::get<CalibrationResult>(std::move(*event)));
+    }
+    publish_status();
+  }
+}
+
+void Service::on_result(CalibrationResult result) {
+  end_collecting();
+  spdlog::info("calibration {}: {} {}", result.request_id,
+               result.verdict == Verdict::kAccepted ? "accepted" : "not accepted",
+               reason_word(result.reason));
+  if (result.verdict == Verdict::kAccepted) activate(result);
+  session_.on_result(std::move(result));
+  publish_result();
+}
+
+void Service::end_collecting() {
+  tracker_.end_collecting();
+  vision_.end_collecting();
+}
+
+void Service::activate(const CalibrationResult& result) {
+  tracker_.use({.request_id = result.request_id,
+                .accepted_ns = monotonic_ns(),
+                .body_id = result.body_id,
+                .hand_from_eye = result.solution.hand_from_eye,
+                .covariance = result.covariance,
+                .time_offset_ns = static_cast<std::int64_t>(1e9 * result.time_offset_s.value_or(0)),
+                .hand_rotation_sigma_rad = rad_from_deg(config_.tracker.noise_rotation_deg),
+                .hand_translation_sigma_mm = config_.tracker.noise_translation_mm});
+  calibrated_request_id_ = result.request_id;
+}
+
+void Service::publish_result() {
+  result_t message = to_message(*session_.last_result());
+  if (!result_publisher_.publish(message)) spdlog::warn("RESULT could not be sent");
+}
+
+void Service::publish_status() {
+  status_t message = status_message();
+  status_publisher_.publish(message);
+}
+
+status_t Service::status_message() {
+  const std::int64_t now_ns = monotonic_ns();
+  status_t status{};
+  status.protocol_version = request_t::VERSION;
+  status.software_version = kVersion;
+  status.uptime_s = seconds_between(started_ns_, now_ns);
+  status.tracker = tracker_reporter_.report(tracker_.health(), now_ns);
+  status.camera = camera_reporter_.report(camera_.health(), now_ns);
+  status.tracked_bodies = tracker_.tracked_bodies();
+  write_session(session_, status);
+  status.sigma_rotation_deg = -1;
+  status.sigma_translation_mm = -1;
+  if (session_.state() == SessionState::kCollecting || session_.state() == SessionState::kSolving) {
+    write_progress(solver_.progress(), *session_.current(),
+                   seconds_between(collecting_since_ns_, now_ns), status);
+    status.features_tracked = vision_.features_tracked();
+    status.frames_collected = static_cast<std::int32_t>(vision_.frames_collected());
+  }
+  status.calibrated = calibrated_request_id_ != 0;
+  status.calibration_request_id = calibrated_request_id_;
+  status.undecodable = static_cast<std::int64_t>(bus_.undecodable());
+  return status;
+}
+
+}  // namespace handeye

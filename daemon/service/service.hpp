@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include <handeye/request_t.hpp>
+#include <handeye/result_t.hpp>
+#include <handeye/status_t.hpp>
+
+#include "daemon/config/config.hpp"
+#include "daemon/service/camera_thread.hpp"
+#include "daemon/service/event_loop.hpp"
+#include "daemon/service/solver_thread.hpp"
+#include "daemon/service/tracker_thread.hpp"
+#include "daemon/service/vision_thread.hpp"
+#include "daemon/session/session.hpp"
+#include "protocol/bus.hpp"
+#include "protocol/channels.hpp"
+
+namespace handeye {
+
+/// What the configuration's files say about the camera, read and checked.
+struct CameraFiles {
+  CameraModel model;
+  cv::Mat mask;  ///< empty: found in the images
+};
+
+/// Reads them. Throws InputError: unreadable, unusable, or of different sizes.
+CameraFiles read_camera_files(const Config::Camera& config);
+
+/// The daemon: devices and solver in threads of their own, and this, the main thread, which talks
+/// to clients: takes requests, reports status five times a second, publishes results. Devices may
+/// be absent, come and go; only what cannot be had at all (port in use, no multicast route,
+/// unusable files) throws InputError from the constructor.
+class Service {
+ public:
+  explicit Service(const Config& config);
+
+  /// Until SIGTERM or SIGINT.
+  void run();
+
+ private:
+  void on_request(const request_t& message);
+  void carry_out(Session::Command command, const Request& request);
+  void start_calibration();
+  void on_solver_events();
+  void on_result(CalibrationResult result);
+  void end_collecting();
+  void activate(const CalibrationResult& result);
+  void publish_result();
+  void publish_status();
+  status_t status_message();
+  void say_ready();
+
+  Config config_;
+  CameraFiles camera_files_;
+  EventLoop loop_;
+  Channels channels_;
+  Bus bus_;
+  Publisher<status_t> status_publisher_;
+  Publisher<result_t> result_publisher_;
+  Session session_;
+  TrackerThread tracker_;
+  CameraThread camera_;
+  VisionThread vision_;
+  SolverThread solver_;
+  DeviceStatusReporter tracker_reporter_;
+  DeviceStatusReporter camera_reporter_;
+  std::int64_t started_ns_;
+  std::int64_t collecting_since_ns_{0};
+  std::int64_t calibrated_request_id_{0};
+};
+
+}  // namespace handeye

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/status_message.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace handeye {
+namespace {
+
+constexpr std::size_t kAcksInStatus = 16;
+
+std::int32_t state_code(SessionState state) {
+  switch (state) {
+    case SessionState::kIdle:
+      return status_t::IDLE;
+    case SessionState::kCollecting:
+      return status_t::COLLECTING;
+    case SessionState::kSolving:
+      return status_t::SOLVING;
+    case SessionState::kDone:
+      return status_t::DONE;
+    case SessionState::kRefused:
+      return status_t::REFUSED;
+    case SessionState::kCancelled:
+      return status_t::CANCELLED;
+  }
+  return status_t::IDLE;
+}
+
+std::int32_t ack_code(AckCode code) {
+  switch (code) {
+    case AckCode::kTaken:
+      return status_t::ACK_TAKEN;
+    case AckCode::kBusy:
+      return status_t::ACK_BUSY;
+    case AckCode::kBadRequest:
+      return status_t::ACK_BAD_REQUEST;
+    case AckCode::kNothingToDo:
+      return status_t::ACK_NOTHING_TO_DO;
+  }
+  return status_t::ACK_BAD_REQUEST;
+}
+
+std::optional<Action> action_of(std::int32_t code) {
+  switch (code) {
+    case request_t::START:
+      return Action::kStart;
+    case request_t::FINISH:
+      return Action::kFinish;
+    case request_t::CANCEL:
+      return Action::kCancel;
+    case request_t::DESCRIBE:
+      return Action::kDescribe;
+    case request_t::RECORD:
+      return Action::kRecord;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// How near sigma is to what is wanted: it falls roughly with the square root of time.
+double sigma_progress(const CalibrationProgress& progress, const WantedSigma& wanted) {
+  if (!progress.sigma_rotation_deg || !progress.sigma_translation_mm) return 0;
+  const double ratio = std::min(wanted.rotation_deg / *progress.sigma_rotation_deg,
+                                wanted.translation_mm / *progress.sigma_translation_mm);
+  return std::clamp(ratio * ratio, 0.0, 1.0);
+}
+
+}  // namespace
+
+std::optional<Request> read_request(const request_t& message, std::string& problem) {
+  const auto action = action_of(message.action);
+  if (message.protocol_version != request_t::VERSION) {
+    problem = "this daemon speaks protocol version " + std::to_string(request_t::VERSION);
+  } else if (!action) {
+    problem = "unknown action " + std::to_string(message.action);
+  } else if (message.request_id == 0) {
+    problem = "request_id must not be 0";
+  } else {
+    return Request{
+        .request_id = message.request_id,
+        .action = *action,
+        .target_request_id = message.target_request_id,
+        .body_id = message.body_id,
+        .wanted = {message.wanted_sigma_rotation_deg, message.wanted_sigma_translation_mm},
+        .max_duration_s = message.max_duration_s};
+  }
+  return std::nullopt;
+}
+
+void write_session(const Session& session, status_t& status) {
+  status.session_state = state_code(session.state());
+  if (const StartOptions* current = session.current()) {
+    status.request_id = current->request_id;
+    status.max_duration_s = current->max_duration_s;
+    status.wanted_sigma_rotation_deg = current->wanted.rotation_deg;
+    status.wanted_sigma_translation_mm = current->wanted.translation_mm;
+  }
+  for (const Ack& ack : session.acks()) {
+    if (status.ack_request_id.size() == kAcksInStatus) break;
+    status.ack_request_id.push_back(ack.request_id);
+    status.ack_code.push_back(ack_code(ack.code));
+    status.ack_text.push_back(ack.text);
+  }
+  status.num_acks = static_cast<std::int32_t>(status.ack_request_id.size());
+}
+
+void write_progress(const CalibrationProgress& progress, const StartOptions& start,
+                    double elapsed_s, status_t& status) {
+  status.elapsed_s = elapsed_s;
+  status.progress = std::clamp(
+      std::max(sigma_progress(progress, start.wanted), elapsed_s / start.max_duration_s), 0.0, 1.0);
+  status.sigma_rotation_deg = progress.sigma_rotation_deg.value_or(-1);
+  status.sigma_translation_mm = progress.sigma_translation_mm.value_or(-1);
+  status.keyframes = progress.keyframes;
+  status.rotation_coverage_deg = progress.rotation_coverage_deg;
+  status.translation_coverage_mm = progress.translation_coverage_mm;
+  status.guidance = progress.guidance;
+}
+
+}  // namespace handeye

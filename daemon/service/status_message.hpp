@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <handeye/request_t.hpp>
+#include <handeye/status_t.hpp>
+
+#include "daemon/session/calibration.hpp"
+#include "daemon/session/session.hpp"
+
+namespace handeye {
+
+/// The request as it came over LCM. Nothing when version, action or id are not ours; `problem` then
+/// says why.
+std::optional<Request> read_request(const request_t& message, std::string& problem);
+
+/// Writes the session's part of STATUS: state, request, acknowledgements.
+void write_session(const Session& session, status_t& status);
+
+/// Writes the running calibration's part: progress towards the wanted sigma or the time limit.
+void write_progress(const CalibrationProgress& progress, const StartOptions& start,
+                    double elapsed_s, status_t& status);
+
+}  // namespace handeye

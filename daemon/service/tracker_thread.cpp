@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/tracker_thread.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace handeye {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Short enough to publish camera poses and to notice silence in time.
+constexpr milliseconds kWait{20};
+// A minute at 60 Hz, should the solver be that busy.
+constexpr std::size_t kHandSamples = 4096;
+constexpr std::size_t kFrameStamps = 256;
+// Bodies beyond are tracked and published, only STATUS does not list them.
+constexpr std::int32_t kBodiesInStatus = 64;
+
+dtrack::ReceiverOptions receiver_options(const Config::Tracker& config) {
+  dtrack::ReceiverOptions options;
+  options.port = config.port;
+  options.bind_address = config.bind_address;
+  options.interface = config.interface;
+  options.multicast_group = config.multicast_group;
+  options.source_address = config.controller;
+  options.controller_address = config.controller;
+  return options;
+}
+
+}  // namespace
+
+TrackerThread::TrackerThread(const Config::Tracker& config, Bus& bus, const Channels& channels)
+    : config_(config),
+      receiver_(receiver_options(config)),
+      hand_stream_(config.body_id),
+      frame_publisher_(bus, channels.tracker),
+      datagram_publisher_(bus, channels.datagram),
+      pose_publisher_(bus, channels.camera_pose),
+      wanted_body_id_(config.body_id),
+      hand_samples_(kHandSamples),
+      calibrations_(4),
+      frame_stamps_(kFrameStamps) {
+  health_.set(device_status_t::WAITING,
+              fmt::format("waiting for packets on port {}", receiver_.port()));
+}
+
+void TrackerThread::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void TrackerThread::begin_collecting(int body_id) {
+  wanted_body_id_ = body_id;
+  collecting_ = true;
+}
+
+void TrackerThread::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    receiver_.receive(kWait, [this](const Datagram& datagram) { take(datagram); });
+    while (const auto calibration = calibrations_.pop()) pose_publisher_.use(*calibration);
+    while (const auto stamp = frame_stamps_.pop()) pose_publisher_.add_frame(*stamp);
+    pose_publisher_.publish_ready(monotonic_ns());
+  }
+}
+
+void TrackerThread::take(const Datagram& datagram) {
+  publish_datagram(datagram);
+  hand_stream_.set_body_id(wanted_body_id_);
+  const auto sample = hand_stream_.take(datagram);
+  if (!sample) {
+    count_datagram();
+    return;
+  }
+  const dtrack::StreamEvent event = monitor_.observe(hand_stream_.frame().number);
+  count_datagram();
+  publish_frame(datagram, *sample);
+  // One that others have overtaken would be out of order in every buffer behind.
+  if (event != dtrack::StreamEvent::kLate) distribute(*sample);
+}
+
+void TrackerThread::count_datagram() {
+  const dtrack::ReceiverCounters& received = receiver_.counters();
+  const dtrack::ParseCounters& parsed = hand_stream_.counters();
+  if (health_.last_ns == 0) {
+    spdlog::info("tracker: first packet on port {}", receiver_.port());
+    health_.set(device_status_t::STREAMING, fmt::format("port {}", receiver_.port()));
+  }
+  health_.last_ns = monotonic_ns();
+  health_.received = static_cast<std::int64_t>(received.received);
+  health_.dropped = static_cast<std::int64_t>(monitor_.lost());
+  health_.dropped_queue =
+      static_cast<std::int64_t>(received.kernel_drops + hand_samples_.dropped());
+  health_.malformed = static_cast<std::int64_t>(parsed.rejected_datagrams + parsed.rejected_lines +
+                                                parsed.rejected_bodies + received.empty);
+  health_.restarts = static_cast<std::int64_t>(monitor_.restarts());
+}
+
+void TrackerThread::publish_frame(const Datagram& datagram, const HandSample& sample) {
+  const dtrack::Frame& frame = hand_stream_.frame();
+  frame_message_.frame_number = frame.number;
+  frame_message_.device_time_s = frame.seconds_of_day.value_or(-1);
+  frame_message_.arrival_ns = datagram.arrival_ns;
+  frame_message_.timestamp_ns = sample.timestamp_ns;
+  frame_message_.bodies.resize(frame.bodies.size());
+  frame_message_.num_bodies = static_cast<std::int32_t>(frame.bodies.size());
+  std::uint64_t tracked = 0;
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    const dtrack::Body& body = frame.bodies[i];
+    frame_message_.bodies[i] = body_message(body);
+    if (body.tracked && body.id < kBodiesInStatus) tracked |= std::uint64_t{1} << body.id;
+  }
+  tracked_bodies_ = tracked;
+  frame_publisher_.publish(frame_message_);
+}
+
+void TrackerThread::publish_datagram(const Datagram& datagram) {
+  if (monotonic_ns() >= record_until_ns_) return;
+  datagram_message_.arrival_ns = datagram.arrival_ns;
+  datagram_message_.data.assign(datagram.bytes.begin(), datagram.bytes.end());
+  datagram_message_.size = static_cast<std::int32_t>(datagram_message_.data.size());
+  datagram_publisher_.publish(datagram_message_);
+}
+
+void TrackerThread::distribute(const HandSample& sample) {
+  if (collecting_) hand_samples_.push(sample);
+  const auto& calibration = pose_publisher_.calibration();
+  if (!calibration) return;
+  // Another body may be collected meanwhile than the one that is calibrated.
+  pose_publisher_.add_hand(calibration->body_id == hand_stream_.body_id()
+                               ? sample
+                               : hand_stream_.sample_of(calibration->body_id, sample.timestamp_ns));
+}
+
+std::string TrackerThread::tracked_bodies() const {
+  const std::uint64_t tracked = tracked_bodies_;
+  std::string ids;
+  for (std::int32_t id = 0; id < kBodiesInStatus; ++id) {
+    if ((tracked >> id & 1) == 0) continue;
+    if (!ids.empty()) ids += ' ';
+    ids += std::to_string(id);
+  }
+  return ids;
+}
+
+body_t TrackerThread::body_message(const dtrack::Body& body) {
+  body_t message{};
+  message.body_id = body.id;
+  message.tracked = body.tracked;
+  if (!body.tracked) return message;
+  const Eigen::Quaterniond q(body.room_from_body.linear());
+  message.q_wxyz[0] = q.w();
+  message.q_wxyz[1] = q.x();
+  message.q_wxyz[2] = q.y();
+  message.q_wxyz[3] = q.z();
+  for (int axis = 0; axis < 3; ++axis) message.t_mm[axis] = body.room_from_body.translation()(axis);
+  return message;
+}
+
+}  // namespace handeye

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <handeye/body_t.hpp>
+#include <handeye/datagram_t.hpp>
+#include <handeye/tracker_frame_t.hpp>
+
+#include "daemon/config/config.hpp"
+#include "daemon/service/bounded_queue.hpp"
+#include "daemon/service/device_health.hpp"
+#include "daemon/service/pose_publisher.hpp"
+#include "daemon/session/hand_stream.hpp"
+#include "drivers/dtrack/receiver.hpp"
+#include "drivers/dtrack/stream_monitor.hpp"
+#include "protocol/channels.hpp"
+
+namespace handeye {
+
+/// Receives the tracker's datagrams, and everything that must follow at once: parses, maps to the
+/// host's clock, publishes TRACKER (and DATAGRAM while recording), hands samples to the solver
+/// while collecting, publishes CAMERA_POSE once calibrated. Never waits for anything but the
+/// socket.
+class TrackerThread {
+ public:
+  /// Opens the socket: throws InputError when the port is in use. The thread starts with start().
+  TrackerThread(const Config::Tracker& config, Bus& bus, const Channels& channels);
+
+  void start();
+
+  /// From the main thread: samples of this body go to hand_samples() from now on.
+  void begin_collecting(int body_id);
+  void end_collecting() { collecting_ = false; }
+  /// From the main thread: publish CAMERA_POSE with this calibration.
+  void use(const ActiveCalibration& calibration) { calibrations_.push(calibration); }
+  /// From the main thread: publish DATAGRAM until then.
+  void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
+  /// From the camera thread: a frame was taken.
+  void frame_taken(const FrameStamp& stamp) { frame_stamps_.push(stamp); }
+
+  /// The solver's end of the samples of the hand.
+  BoundedQueue<HandSample>& hand_samples() { return hand_samples_; }
+  const DeviceHealth& health() const { return health_; }
+  /// Ids seen in the last datagram, "0 2".
+  std::string tracked_bodies() const;
+  std::uint16_t port() const { return receiver_.port(); }
+
+ private:
+  void run(const std::stop_token& stop);
+  void take(const Datagram& datagram);
+  void count_datagram();
+  static body_t body_message(const dtrack::Body& body);
+  void publish_frame(const Datagram& datagram, const HandSample& sample);
+  void publish_datagram(const Datagram& datagram);
+  void distribute(const HandSample& sample);
+
+  Config::Tracker config_;
+  dtrack::Receiver receiver_;
+  dtrack::StreamMonitor monitor_;
+  HandStream hand_stream_;
+  Publisher<tracker_frame_t> frame_publisher_;
+  Publisher<datagram_t> datagram_publisher_;
+  PosePublisher pose_publisher_;
+  tracker_frame_t frame_message_{};
+  datagram_t datagram_message_{};
+
+  DeviceHealth health_;
+  std::atomic<bool> collecting_{false};
+  std::atomic<int> wanted_body_id_;
+  std::atomic<std::int64_t> record_until_ns_{0};
+  std::atomic<std::uint64_t> tracked_bodies_{
+      0};  ///< bit i: body i was tracked in the last datagram
+  BoundedQueue<HandSample> hand_samples_;
+  BoundedQueue<ActiveCalibration> calibrations_;
+  BoundedQueue<FrameStamp> frame_stamps_;
+  std::jthread thread_;
+};
+
+}  // namespace handeye

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/vision_thread.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace handeye {
+namespace {
+
+// Feature lists are small; the solver may be busy with an adjustment for some seconds.
+constexpr std::size_t kTrackedInFlight = 256;
+constexpr std::chrono::milliseconds kWait{100};
+// Below 100 kB for any endoscope image up to 1280x720; see image_t.lcm.
+constexpr int kJpegQuality = 80;
+
+}  // namespace
+
+VisionThread::VisionThread(Exchange<Frame>& frames, Bus& bus, Options options)
+    : frames_(frames),
+      options_(std::move(options)),
+      jpeg_options_{cv::IMWRITE_JPEG_QUALITY, kJpegQuality},
+      tracked_(kTrackedInFlight) {
+  if (options_.frame_channel) publisher_.emplace(bus, *options_.frame_channel);
+}
+
+void VisionThread::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+std::uint64_t VisionThread::begin_collecting() {
+  frames_collected_ = 0;
+  features_tracked_ = 0;
+  collecting_ = ++last_calibration_;
+  return last_calibration_;
+}
+
+void VisionThread::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    Frame* frame = frames_.take(kWait);
+    if (frame == nullptr) continue;
+    if (const std::uint64_t calibration = collecting_) track(*frame, calibration);
+    if (publisher_ && monotonic_ns() < record_until_ns_) publish(*frame);
+    frames_.release(frame);
+  }
+}
+
+void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
+  if (calibration != staged_calibration_) {
+    stage_ = std::make_unique<TrackingStage>(options_.mask.clone());
+    staged_calibration_ = calibration;
+  }
+  TrackedItem* item = tracked_.acquire();
+  // The tracker must see every frame, also one that the solver has no room for.
+  TrackedFrame& target = item != nullptr ? item->frame : overflow_;
+  stage_->process(frame, target);
+  features_tracked_ = static_cast<int>(target.observations.size());
+  ++frames_collected_;
+  if (item == nullptr) {
+    tracked_.count_drop();
+    return;
+  }
+  item->calibration = calibration;
+  item->tracking_ms = stage_->time_ms();
+  tracked_.commit(item);
+}
+
+void VisionThread::publish(const Frame& frame) {
+  if (!cv::imencode(".jpg", frame.grey, message_.data, jpeg_options_)) return;
+  message_.timestamp_ns = frame.timestamp_ns;
+  message_.frame_number = frame.sequence;
+  message_.width = frame.grey.cols;
+  message_.height = frame.grey.rows;
+  message_.pixel_format = image_t::JPEG;
+  message_.size = static_cast<std::int32_t>(message_.data.size());
+  publisher_->publish(message_);
+}
+
+}  // namespace handeye

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <handeye/image_t.hpp>
+
+#include "daemon/service/exchange.hpp"
+#include "daemon/session/tracking_stage.hpp"
+#include "drivers/camera.hpp"
+#include "protocol/bus.hpp"
+
+namespace handeye {
+
+/// A tracked frame on its way to the solver.
+struct TrackedItem {
+  std::uint64_t calibration{0};  ///< which begin_collecting() it belongs to
+  TrackedFrame frame;
+  double tracking_ms{0};  ///< spent so far in this calibration
+};
+
+/// Takes frames from the camera; while collecting tracks features and hands them to the solver;
+/// while recording publishes the frames of a camera that is not on LCM already.
+class VisionThread {
+ public:
+  struct Options {
+    cv::Mat mask;  ///< empty: found in the images
+    std::optional<std::string>
+        frame_channel;  ///< where to publish frames while recording; none: never
+  };
+
+  VisionThread(Exchange<Frame>& frames, Bus& bus, Options options);
+
+  void start();
+
+  /// From the main thread: returns the number that the TrackedItems of this calibration will carry.
+  std::uint64_t begin_collecting();
+  void end_collecting() { collecting_ = 0; }
+  void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
+
+  /// The solver's end of the tracked frames.
+  Exchange<TrackedItem>& tracked() { return tracked_; }
+  int features_tracked() const { return features_tracked_; }
+  std::int64_t frames_collected() const { return frames_collected_; }
+
+ private:
+  void run(const std::stop_token& stop);
+  void track(const Frame& frame, std::uint64_t calibration);
+  void publish(const Frame& frame);
+
+  Exchange<Frame>& frames_;
+  Options options_;
+  std::optional<Publisher<image_t>> publisher_;
+  image_t message_{};
+  std::vector<int> jpeg_options_;
+
+  std::unique_ptr<TrackingStage> stage_;
+  std::uint64_t staged_calibration_{0};
+  TrackedFrame overflow_;
+
+  std::uint64_t last_calibration_{0};
+  std::atomic<std::uint64_t> collecting_{0};  ///< the running calibration's number; 0: none
+  std::atomic<std::int64_t> record_until_ns_{0};
+  std::atomic<int> features_tracked_{0};
+  std::atomic<std::int64_t> frames_collected_{0};
+  Exchange<TrackedItem> tracked_;
+  std::jthread thread_;
+};
+
+}  // namespace handeye

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/handeye/selection.hpp"
+#include "daemon/session/estimate.hpp"
+#include "daemon/session/guidance.hpp"
+#include "daemon/session/stopwatch.hpp"
+#include "daemon/session/verdict.hpp"
+
+namespace handeye {
+namespace {
+
+// On the way an estimate is only for orientation; so many frames give it fast enough.
+constexpr std::size_t kFramesOnTheWay = 150;
+
+std::vector<RegisteredFrame> thinned(const std::vector<RegisteredFrame>& frames,
+                                     std::size_t at_most) {
+  if (frames.size() <= at_most) return frames;
+  std::vector<RegisteredFrame> kept;
+  kept.reserve(at_most);
+  for (std::size_t i = 0; i < at_most; ++i) kept.push_back(frames[i * frames.size() / at_most]);
+  return kept;
+}
+
+std::vector<PosePair> pose_pairs(const Estimate& estimate) {
+  std::vector<PosePair> pairs;
+  pairs.reserve(estimate.observations.size());
+  for (const HandEyeObservation& observation : estimate.observations) {
+    pairs.push_back(observation.poses);
+  }
+  return pairs;
+}
+
+/// Every method's answer to the same movements, the likelihood's last: the answer.
+std::vector<MethodResult> compare_methods(const Estimate& estimate) {
+  const std::vector<PosePair> pairs = pose_pairs(estimate);
+  const std::vector<Movement> movements = select_movements(pairs);
+  std::vector<MethodResult> results;
+  for (const Method& method : unknown_scale_methods()) {
+    const Stopwatch stopwatch;
+    MethodResult result{.name = std::string(method.name)};
+    result.solution = method.solve(movements);
+    result.time_ms = stopwatch.elapsed_ms();
+    if (result.solution) result.residuals = seed_residuals(pairs, *result.solution);
+    results.push_back(std::move(result));
+  }
+  MethodResult answer{.name = "maximum_likelihood"};
+  if (estimate.likelihood) {
+    answer.solution = estimate.likelihood->solution;
+    answer.residuals = seed_residuals(pairs, *answer.solution);
+    answer.time_ms = estimate.time_ms;
+  }
+  results.push_back(std::move(answer));
+  return results;
+}
+
+void write_estimate(const Estimate& estimate, CalibrationResult& result) {
+  result.methods = compare_methods(estimate);
+  if (estimate.correlation) {
+    result.time_offset_s = estimate.time_offset_s;
+    result.time_offset_sigma_s = estimate.time_offset_sigma_s;
+  }
+  if (!estimate.likelihood) return;
+  result.has_estimate = true;
+  result.solution = estimate.likelihood->solution;
+  result.covariance = estimate.likelihood->covariance;
+  result.sigma_rotation_deg = estimate.likelihood->sigma_rotation_deg();
+  result.sigma_translation_mm = estimate.likelihood->sigma_translation_mm();
+  result.residuals = result.methods.back().residuals;
+}
+
+}  // namespace
+
+Calibration::Calibration(const CalibrationOptions& options)
+    : options_(options),
+      reconstruction_(options.camera, options.reconstruction),
+      hand_({.capacity = options.hand_capacity}) {}
+
+void Calibration::add_hand(const HandSample& sample) {
+  hand_.push(sample);
+  hand_path_.add(sample);
+  hand_hidden_ = !sample.tracked;
+}
+
+void Calibration::add_frame(const TrackedFrame& frame) {
+  const Stopwatch stopwatch;
+  ++frames_;
+  features_recent_ = static_cast<int>(frame.observations.size());
+  features_ += features_recent_;
+  state_ = reconstruction_.add(frame);
+  reconstruction_ms_ += stopwatch.elapsed_ms();
+}
+
+CalibrationProgress Calibration::progress() const {
+  CalibrationProgress progress;
+  progress.keyframes = reconstruction_.keyframes();
+  progress.rotation_coverage_deg = hand_path_.rotation_coverage_deg();
+  progress.translation_coverage_mm = hand_path_.translation_coverage_mm();
+  progress.guidance = guidance_for({.any_frame = frames_ > 0,
+                                    .hand_hidden = hand_hidden_,
+                                    .features_recent = static_cast<double>(features_recent_),
+                                    .state = state_,
+                                    .rotation_coverage_deg = progress.rotation_coverage_deg,
+                                    .second_axis_deg = hand_path_.second_axis_deg(),
+                                    .translation_coverage_mm = progress.translation_coverage_mm});
+  const std::vector<RegisteredFrame> frames =
+      thinned(reconstruction_.current().frames, kFramesOnTheWay);
+  const Estimate estimate_so_far = estimate(frames, hand_, options_.noise);
+  if (estimate_so_far.likelihood) {
+    progress.sigma_rotation_deg = estimate_so_far.likelihood->sigma_rotation_deg();
+    progress.sigma_translation_mm = estimate_so_far.likelihood->sigma_translation_mm();
+  }
+  return progress;
+}
+
+CalibrationResult Calibration::solve() {
+  CalibrationResult result = begin_result();
+  const Reconstruction reconstruction = reconstruct(result);
+  const Stopwatch stopwatch;
+  const Estimate found = estimate(reconstruction.frames, hand_, options_.noise);
+  write_estimate(found, result);
+  result.reason = reason_to_refuse({.frames_received = frames_,
+                                    .hand_path = hand_path_.room_from_hand(),
+                                    .hand_samples = hand_.size(),
+                                    .reconstruction = reconstruction,
+                                    .estimate = found,
+                                    .noise = options_.noise,
+                                    .wanted = options_.start.wanted});
+  result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
+  result.advice = reason_advice(result.reason);
+  result.timings_ms.handeye = stopwatch.elapsed_ms();
+  return result;
+}
+
+CalibrationResult Calibration::begin_result() const {
+  CalibrationResult result;
+  result.request_id = options_.start.request_id;
+  result.body_id = options_.start.body_id;
+  result.wanted = options_.start.wanted;
+  result.camera = options_.camera;
+  result.frames.received = frames_;
+  if (frames_ > 0) {
+    result.features.tracked_mean = static_cast<double>(features_) / static_cast<double>(frames_);
+  }
+  return result;
+}
+
+Reconstruction Calibration::reconstruct(CalibrationResult& result) {
+  const Stopwatch stopwatch;
+  Reconstruction reconstruction = reconstruction_.finish();
+  reconstruction_ms_ += stopwatch.elapsed_ms();
+  result.frames.used = static_cast<std::int64_t>(reconstruction.frames.size());
+  result.frames.keyframes =
+      std::ranges::count_if(reconstruction.frames, &RegisteredFrame::keyframe);
+  result.features.points = reconstruction.points;
+  result.reprojection_px = reconstruction.reprojection_px;
+  result.timings_ms.reconstruction = reconstruction_ms_;
+  return reconstruction;
+}
+
+}  // namespace handeye

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "daemon/geometry/camera_model.hpp"
+#include "daemon/handeye/types.hpp"
+#include "daemon/reconstruction/reconstruction.hpp"
+#include "daemon/session/hand_path.hpp"
+#include "daemon/session/result.hpp"
+#include "daemon/session/session.hpp"
+#include "daemon/sync/pose_buffer.hpp"
+
+namespace handeye {
+
+struct CalibrationOptions {
+  StartOptions start;
+  CameraModel camera;
+  PoseNoise noise;  ///< of the tracker; the eye's is found from the data
+  ReconstructionOptions reconstruction;
+  std::size_t hand_capacity{65'536};  ///< samples of the hand kept; the oldest go first
+};
+
+/// How far a running calibration is.
+struct CalibrationProgress {
+  int keyframes{0};
+  double rotation_coverage_deg{0};    ///< largest rotation of the hand since the first sample
+  double translation_coverage_mm{0};  ///< largest translation of the hand since then
+  std::optional<double> sigma_rotation_deg;  ///< so far; nothing: not known yet
+  std::optional<double> sigma_translation_mm;
+  std::string guidance;  ///< the one thing to do next, for the person with the scope
+};
+
+/// One calibration from its streams to its result: reconstruction, time offset, hand-eye, verdict.
+/// Knows no thread and no clock but the stamps it is given; the same in the daemon and in a replay,
+/// and the same answer for the same input, bit for bit (timings aside). One thread.
+class Calibration {
+ public:
+  explicit Calibration(const CalibrationOptions& options);
+
+  /// Samples of the hand, in order of time.
+  void add_hand(const HandSample& sample);
+  /// Tracked frames, in order of time; milliseconds, now and then some ten.
+  void add_frame(const TrackedFrame& frame);
+
+  /// An estimate from what is there, without the global adjustment: some ten milliseconds.
+  CalibrationProgress progress() const;
+  /// The result from what is there. More may be added after it, and solve() called again.
+  CalibrationResult solve();
+
+  const CalibrationOptions& options() const { return options_; }
+
+ private:
+  CalibrationResult begin_result() const;
+  Reconstruction reconstruct(CalibrationResult& result);
+
+  CalibrationOptions options_;
+  IncrementalReconstruction reconstruction_;
+  ReconstructionState state_{ReconstructionState::kTooFewFeatures};
+  PoseBuffer hand_;
+  HandPath hand_path_;
+  bool hand_hidden_{false};  ///< in the last sample
+  std::int64_t frames_{0};
+  std::int64_t features_{0};  ///< summed over the frames
+  int features_recent_{0};    ///< in the last frame
+  double reconstruction_ms_{0};
+};
+
+}  // namespace handeye

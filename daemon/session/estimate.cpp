@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/estimate.hpp"
+
+#include <cmath>
+
+#include "daemon/session/stopwatch.hpp"
+
+namespace handeye {
+namespace {
+
+// The likelihood is linear in the offset within a few milliseconds; look up again beyond this.
+constexpr double kOffsetSettled_s = 0.0005;
+constexpr int kMostRounds = 4;
+
+std::optional<TimeOffset> correlate(std::span<const RegisteredFrame> frames,
+                                    const PoseBuffer& hand) {
+  std::vector<EyeSample> eye;
+  eye.reserve(frames.size());
+  for (const RegisteredFrame& frame : frames) {
+    eye.push_back({frame.timestamp_ns, frame.eye_from_scene});
+  }
+  return correlate_angular_speed(hand, eye);
+}
+
+}  // namespace
+
+std::vector<HandEyeObservation> observe(std::span<const RegisteredFrame> frames,
+                                        const PoseBuffer& hand, double time_offset_s) {
+  std::vector<HandEyeObservation> observations;
+  observations.reserve(frames.size());
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
+  for (const RegisteredFrame& frame : frames) {
+    const HandLookup found = hand.lookup(frame.timestamp_ns - offset_ns);
+    if (found.status != LookupStatus::kOk) continue;
+    observations.push_back({.poses = {found.room_from_hand, frame.eye_from_scene},
+                            .hand_angular_velocity = found.angular_velocity,
+                            .hand_velocity = found.velocity});
+  }
+  return observations;
+}
+
+Estimate estimate(std::span<const RegisteredFrame> frames, const PoseBuffer& hand,
+                  const PoseNoise& noise) {
+  const Stopwatch stopwatch;
+  Estimate result;
+  result.correlation = correlate(frames, hand);
+  if (result.correlation) {
+    result.time_offset_s = result.correlation->time_offset_s;
+    result.time_offset_sigma_s = result.correlation->sigma_s;
+  }
+  MaximumLikelihoodOptions options;
+  options.noise = noise;
+  // Without a correlation there was too little rotation to refine an offset either.
+  options.estimate_time_offset = result.correlation.has_value();
+  for (int round = 0; round < kMostRounds; ++round) {
+    result.observations = observe(frames, hand, result.time_offset_s);
+    result.likelihood = maximum_likelihood(result.observations, options);
+    if (!result.likelihood || !options.estimate_time_offset) break;
+    result.time_offset_s += result.likelihood->time_offset_correction_s;
+    result.time_offset_sigma_s = result.likelihood->time_offset_sigma_s;
+    if (std::abs(result.likelihood->time_offset_correction_s) < kOffsetSettled_s) break;
+  }
+  result.time_ms = stopwatch.elapsed_ms();
+  return result;
+}
+
+}  // namespace handeye

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "daemon/reconstruction/reconstruction.hpp"
+
+namespace handeye {
+
+/// What is known while collecting, for saying what to do next.
+struct Situation {
+  bool any_frame{false};
+  bool hand_hidden{false};    ///< in the tracker's last samples
+  double features_recent{0};  ///< tracked in the last frame
+  ReconstructionState state{ReconstructionState::kTooFewFeatures};
+  double rotation_coverage_deg{0};
+  /// Rotation about the axis that was turned about second most [deg, rms]: both are needed.
+  double second_axis_deg{0};
+  double translation_coverage_mm{0};
+};
+
+/// The one thing to do next, in a few words for the person who holds the scope; empty: go on.
+std::string guidance_for(const Situation& situation);
+
+}  // namespace handeye

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/replay.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/session/calibration.hpp"
+#include "daemon/session/hand_stream.hpp"
+#include "daemon/session/stopwatch.hpp"
+#include "daemon/session/tracking_stage.hpp"
+#include "drivers/recording/recording.hpp"
+#include "protocol/exit_codes.hpp"
+
+namespace handeye {
+namespace {
+
+// Only how often the progress is told.
+constexpr std::int64_t kProgressEvery = 10;
+
+CameraModel camera_for(const Recording& recording, const ReplayOptions& options) {
+  if (options.camera_file) return read_camera_model(*options.camera_file);
+  if (recording.camera_model) return *recording.camera_model;
+  throw InputError(fmt::format("{}: has no camera.json; name the camera's with --camera FILE",
+                               options.recording.string()));
+}
+
+cv::Mat mask_for(const Recording& recording, const ReplayOptions& options,
+                 const CameraModel& camera) {
+  const cv::Mat mask = options.mask_file ? read_mask(*options.mask_file) : recording.mask;
+  if (!mask.empty() && (mask.cols != camera.width || mask.rows != camera.height)) {
+    throw InputError(fmt::format("{}: the mask is {}x{}, the camera file is for {}x{}",
+                                 options.mask_file.value_or(options.recording).string(), mask.cols,
+                                 mask.rows, camera.width, camera.height));
+  }
+  return mask;
+}
+
+void require_size(const Frame& frame, const CameraModel& camera, const ReplayOptions& options) {
+  if (frame.grey.cols == camera.width && frame.grey.rows == camera.height) return;
+  throw InputError(fmt::format(
+      "{}: its images are {}x{}, but the camera file is for {}x{}; give the right one with "
+      "--camera",
+      options.recording.string(), frame.grey.cols, frame.grey.rows, camera.width, camera.height));
+}
+
+CalibrationOptions calibration_options(const ReplayOptions& options, const CameraModel& camera,
+                                       std::size_t datagrams) {
+  CalibrationOptions calibration;
+  calibration.start.body_id = std::max(options.body_id, 0);
+  calibration.start.wanted = options.wanted;
+  calibration.camera = camera;
+  calibration.hand_capacity = std::max<std::size_t>(datagrams, 1);
+  return calibration;
+}
+
+/// The tracker's side of a recording, taken in as far as time has come.
+class RecordedHand {
+ public:
+  RecordedHand(const std::vector<RecordedDatagram>& datagrams, int body_id)
+      : next_(datagrams.begin()), end_(datagrams.end()), stream_(body_id) {}
+
+  void feed_until(std::int64_t arrival_ns, Calibration& calibration) {
+    for (; next_ != end_ && next_->arrival_ns <= arrival_ns; ++next_) {
+      const auto sample = stream_.take({next_->arrival_ns, next_->bytes});
+      if (sample) calibration.add_hand(*sample);
+    }
+  }
+  int body_id() const { return std::max(stream_.body_id(), 0); }
+
+ private:
+  std::vector<RecordedDatagram>::const_iterator next_;
+  std::vector<RecordedDatagram>::const_iterator end_;
+  HandStream stream_;
+};
+
+}  // namespace
+
+CalibrationResult replay(const ReplayOptions& options) {
+  const Stopwatch stopwatch;
+  Recording recording = open_recording(options.recording);
+  const CameraModel camera = camera_for(recording, options);
+  TrackingStage tracking(mask_for(recording, options, camera));
+  RecordedHand hand(recording.datagrams, options.body_id);
+  Calibration calibration(calibration_options(options, camera, recording.datagrams.size()));
+
+  if (const auto problem = recording.camera->open()) throw InputError(*problem);
+  Frame frame;
+  TrackedFrame tracked;
+  std::int64_t frames_done = 0;
+  while (recording.camera->grab(frame, std::chrono::milliseconds(0)) == GrabStatus::kFrame) {
+    require_size(frame, camera, options);
+    hand.feed_until(frame.timestamp_ns, calibration);
+    tracking.process(frame, tracked);
+    calibration.add_frame(tracked);
+    if (options.progress && ++frames_done % kProgressEvery == 0) options.progress(frames_done);
+  }
+  hand.feed_until(std::numeric_limits<std::int64_t>::max(), calibration);
+
+  CalibrationResult result = calibration.solve();
+  result.body_id = hand.body_id();
+  result.frames.dropped = static_cast<std::int64_t>(recording.camera->counters().dropped);
+  result.timings_ms.tracking = tracking.time_ms();
+  result.timings_ms.total = stopwatch.elapsed_ms();
+  return result;
+}
+
+}  // namespace handeye

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "daemon/handeye/types.hpp"
+#include "daemon/reconstruction/reconstruction.hpp"
+#include "daemon/session/estimate.hpp"
+#include "daemon/session/result.hpp"
+
+namespace handeye {
+
+/// Everything a verdict rests on.
+struct Evidence {
+  std::int64_t frames_received{0};
+  std::span<const Pose> hand_path;  ///< room_from_hand, wherever it was tracked
+  std::size_t hand_samples{0};
+  const Reconstruction& reconstruction;
+  const Estimate& estimate;
+  PoseNoise noise;  ///< of the tracker
+  WantedSigma wanted;
+};
+
+/// The reason to refuse, first match: nothing was seen, the motion was not enough, the images were
+/// not, the answer is not certain enough. kNone: accept.
+Reason reason_to_refuse(const Evidence& evidence);
+
+}  // namespace handeye

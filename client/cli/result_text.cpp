@@ -111,7 +111,7 @@ std::string basis_text(const CalibrationResult& result) {
 
 EulerAngles euler_angles(const Eigen::Matrix3d& rotation) {
   const double cos_pitch = std::hypot(rotation(0, 0), rotation(1, 0));
-  const double pitch = std::atan2(-rotation(2, 0), cos_pitch);
+  const double pitch = std::atan2(0.0 - rotation(2, 0), cos_pitch);  // 0 - 0: no negative zero
   constexpr double kGimbalLock = 1e-9;
   if (cos_pitch < kGimbalLock) {
     const double yaw = std::atan2(-rotation(0, 1), rotation(1, 1));

@@ -96,13 +96,16 @@ std::string status_text(const status_t& status, const Palette& palette) {
 
 std::string progress_text(const status_t& status) {
   if (status.session_state == status_t::SOLVING) return "solving ...";
-  std::string text = fmt::format(
-      "{} {:3.0f} %  {:.0f} s  sigma {} {}", progress_bar(status.progress, 20),
-      100 * status.progress, status.elapsed_s,
-      sigma_text(status.sigma_rotation_deg, status.wanted_sigma_rotation_deg, "deg"),
-      sigma_text(status.sigma_translation_mm, status.wanted_sigma_translation_mm, "mm"));
-  if (!status.guidance.empty()) text += "  " + printable(status.guidance);
-  return text;
+  // What to do stands before the figures: a narrow terminal cuts the end off.
+  std::string text =
+      fmt::format("{} {:3.0f} %  ", progress_bar(status.progress, 12), 100 * status.progress);
+  if (!status.guidance.empty()) text += printable(status.guidance) + "  ";
+  return text +
+         fmt::format(
+             "({}, {}, {:.0f} s)",
+             sigma_text(status.sigma_rotation_deg, status.wanted_sigma_rotation_deg, "deg"),
+             sigma_text(status.sigma_translation_mm, status.wanted_sigma_translation_mm, "mm"),
+             status.elapsed_s);
 }
 
 }  // namespace handeye::cli

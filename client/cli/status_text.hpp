@@ -24,7 +24,8 @@ std::string status_text(const status_t& status, const Palette& palette);
 /// The same, complete, for a program.
 nlohmann::ordered_json status_json(const status_t& status);
 
-/// One line while a calibration runs: bar, uncertainty so far against the wanted, what to do next.
+/// One line while a calibration runs: bar, what to do next, uncertainty so far against
+/// the wanted.
 std::string progress_text(const status_t& status);
 
 /// Writes JSON without ever failing over text that is not UTF-8. indent < 0: on one line.

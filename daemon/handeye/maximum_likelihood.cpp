@@ -15,8 +15,9 @@ namespace handeye {
 namespace {
 
 constexpr std::size_t kMinPoses = 4;
-constexpr double kPriorPoses = 5;      // so many poses' worth is the assumed noise
-constexpr int kWeightIterations = 10;  // of noise and robust weights
+constexpr double kPriorPoses = 5;               // so many poses' worth is the assumed noise
+constexpr double kLargestForCorrelation = 6.0;  // norm to which outliers are cut
+constexpr int kWeightIterations = 10;           // of noise and robust weights
 constexpr double kLowestInformation =
     1e-13;  // of the scaled normal equations: beyond it, not observed
 
@@ -68,6 +69,34 @@ Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
   const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(kLowestInformation).cwiseInverse();
   return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
          eigen.eigenvectors().transpose() * scale.asDiagonal();
+}
+
+/// How many times fewer independent poses there are than poses: the integrated autocorrelation of
+/// the whitened residuals, summed while it is above what chance shows. The unknowns act slowly
+/// compared with it, so that the whole of it counts.
+double correlation_time(const std::vector<Vector6d>& residuals, const Matrix6d& whitening) {
+  std::vector<Vector6d> whitened;
+  whitened.reserve(residuals.size());
+  for (const Vector6d& r : residuals) {
+    Vector6d w = whitening * r;
+    const double norm = w.norm();
+    if (norm > kLargestForCorrelation) w *= kLargestForCorrelation / norm;
+    whitened.push_back(w);
+  }
+  double variance = 0;
+  for (const Vector6d& w : whitened) variance += w.squaredNorm();
+  const auto n = whitened.size();
+  if (!(variance > 0)) return 1.0;
+  const double chance = 2.5 / std::sqrt(6.0 * static_cast<double>(n));
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag < n / 3; ++lag) {
+    double product = 0;
+    for (std::size_t k = lag; k < n; ++k) product += whitened[k].dot(whitened[k - lag]);
+    const double correlation = product / variance;
+    if (correlation < chance) break;
+    sum += 2.0 * correlation;
+  }
+  return sum;
 }
 
 struct Estimate {
@@ -124,12 +153,22 @@ Estimate estimate_from(std::span<const HandEyeObservation> observations,
     const double chance = 1.0 + 3.3 * std::sqrt(2.0 / freedom);
     if (chi2 / freedom > chance) covariance *= chi2 / freedom;
   }
+  if (options.account_for_correlation) {
+    result.correlation_inflation = correlation_time(residuals, whitening);
+    covariance *= result.correlation_inflation;
+  }
   result.poses_used = observations.size();
   result.solution = problem.solution();
   result.room_from_scene = problem.room_from_scene();
   result.covariance = covariance.topLeftCorner<6, 6>();
   result.noise = noise_of(variances, options.noise);
-  if (options.estimate_scale) result.log_scale_sigma = std::sqrt(covariance(12, 12));
+  result.sigma_translation_known_scale_mm = result.sigma_translation_mm();
+  if (options.estimate_scale) {
+    result.log_scale_sigma = std::sqrt(covariance(12, 12));
+    const double explained = covariance.block<3, 1>(3, 12).squaredNorm() / covariance(12, 12);
+    result.sigma_translation_known_scale_mm =
+        std::sqrt(std::max(0.0, covariance.block<3, 3>(3, 3).trace() - explained));
+  }
   if (options.estimate_time_offset) {
     result.time_offset_correction_s = problem.time_offset_correction_s();
     result.time_offset_sigma_s = std::sqrt(covariance(p - 1, p - 1));

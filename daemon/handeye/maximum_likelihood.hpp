@@ -16,8 +16,10 @@ struct HandEyeObservation {
 };
 
 struct MaximumLikelihoodOptions {
-  PoseNoise noise;                   ///< assumed; the start where it is estimated
-  bool estimate_noise{true};         ///< from the residuals (variance components)
+  PoseNoise noise;  ///< assumed; the start where it is estimated
+  bool estimate_noise{true};
+  bool account_for_correlation{true};  ///< inflate the covariance by what the residuals show ///<
+                                       ///< from the residuals (variance components)
   bool estimate_scale{true};         ///< false: the start's scale is exact
   bool estimate_time_offset{false};  ///< needs velocities
   double time_offset_prior_s{0.05};  ///< standard deviation of the correction before the data
@@ -37,10 +39,11 @@ struct MaximumLikelihoodResult {
   /// and huge where the data do not determine the answer.
   Matrix6d covariance{Matrix6d::Zero()};
   double log_scale_sigma{0};
-  std::size_t poses_used{0};        ///< without the outliers
-  double chi2_per_dof{0};           ///< against the assumed noise
-  PoseNoise noise;                  ///< as estimated, or as assumed
-  double correlation_inflation{1};  ///< of the covariance, for errors correlated in time
+  double sigma_translation_known_scale_mm{0};  ///< as sigma_translation_mm, were the scale known
+  std::size_t poses_used{0};                   ///< without the outliers
+  double chi2_per_dof{0};                      ///< against the assumed noise
+  PoseNoise noise;                             ///< as estimated, or as assumed
+  double correlation_inflation{1};             ///< of the covariance, for errors correlated in time
 
   double sigma_rotation_deg() const;    ///< square root of the trace of w's block
   double sigma_translation_mm() const;  ///< square root of the trace of dt's block

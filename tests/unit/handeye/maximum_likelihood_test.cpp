@@ -114,6 +114,19 @@ TEST(MaximumLikelihood, ClaimsAnHonestCovarianceWithEstimatedNoiseAndTimeOffset)
   EXPECT_LT(mean, nees_band(100).high);
 }
 
+/// Errors of a reconstruction drift: as if there were fewer poses, which the residuals show.
+TEST(MaximumLikelihood, ClaimsLessWhenErrorsAreCorrelated) {
+  for (const double correlation : {0.7, 0.9}) {
+    MaximumLikelihoodOptions options;
+    options.noise = tracker_and_camera();
+    const double honest = mean_nees(20, 300, options, 0, correlation);
+    EXPECT_GT(honest, 2.0) << correlation;
+    EXPECT_LT(honest, 12.0) << correlation;
+    options.account_for_correlation = false;
+    EXPECT_GT(mean_nees(20, 300, options, 0, correlation), honest) << correlation;
+  }
+}
+
 TEST(MaximumLikelihood, FindsTheNoise) {
   MaximumLikelihoodOptions options;
   options.noise = {rad_from_deg(0.2), 0.05, rad_from_deg(0.01), 0.05};

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "daemon/handeye/maximum_likelihood.hpp"
+
+namespace handeye {
+
+/// What is wrong with a motion, in the order in which it is said (math.md section 10).
+enum class MotionProblem {
+  kNone,
+  kNoMotion,              ///< nothing above the noise
+  kInsufficientRotation,  ///< translation only
+  kNoParallax,            ///< rotation about the camera's centre
+  kSingleAxis,            ///< all rotations about one axis
+  kFixedPoint,            ///< a pivot: scale and lever arm cannot be told apart
+  kUncertain,             ///< none of these, but not good enough
+};
+
+struct JudgeOptions {
+  double wanted_rotation_deg{0.3};    ///< square root of the trace of w's block
+  double wanted_translation_mm{1.5};  ///< likewise of dt's
+  double max_log_scale_sigma{0.1};    ///< beyond it the linearised covariance means nothing
+  double max_halves_chi2{27.9};       ///< of 6 dof: exceeded by chance once in 10 000
+  MaximumLikelihoodOptions solver;    ///< for the halves; as for the whole
+};
+
+struct Judgement {
+  MotionProblem problem{MotionProblem::kUncertain};  ///< kNone: accepted
+  /// Squared Mahalanobis distance between the answers of the first and the second half of the data
+  /// (6 dof); nothing when a half is too short.
+  std::optional<double> halves_chi2;
+};
+
+/// Accepts an answer whose sigmas are within what was wanted, whose scale is observable and whose
+/// disjoint halves agree within their sigmas; else names what the motion lacks. `result`: of the
+/// same observations; nothing when there is none.
+Judgement judge(std::span<const HandEyeObservation> observations,
+                const std::optional<MaximumLikelihoodResult>& result,
+                const JudgeOptions& options = {});
+
+/// What the hand's motion alone says, for when there are no eye poses: kNoMotion,
+/// kInsufficientRotation, kSingleAxis, kFixedPoint or kNone. With `images_without_parallax` (the
+/// reconstruction saw rotation only) a motion that turns is called kNoParallax.
+MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const PoseNoise& noise,
+                                   bool images_without_parallax = false);
+
+}  // namespace handeye

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/handeye/synthetic.hpp"
+
+namespace handeye {
+
+void PrintTo(MotionProblem problem, std::ostream* out) {
+  constexpr const char* kNames[] = {"none",        "no_motion",   "insufficient_rotation",
+                                    "no_parallax", "single_axis", "fixed_point",
+                                    "uncertain"};
+  *out << kNames[static_cast<int>(problem)];
+}
+
+namespace {
+
+using synthetic::record;
+using synthetic::Recording;
+using synthetic::scope;
+using synthetic::tracker_and_camera;
+
+Judgement judged(const std::vector<HandEyeObservation>& observations) {
+  return judge(observations, maximum_likelihood(observations));
+}
+
+MotionProblem problem_of(const synthetic::Motion& motion, std::uint32_t seed) {
+  return judged(record(scope(0.07), motion, 300, tracker_and_camera(), seed).observations).problem;
+}
+
+TEST(Judge, AcceptsAFreeHand) {
+  for (std::uint32_t seed = 0; seed < 5; ++seed) {
+    const Judgement judgement = judged(
+        record(scope(0.07), synthetic::free_hand, 300, tracker_and_camera(), seed).observations);
+    EXPECT_EQ(judgement.problem, MotionProblem::kNone) << seed;
+    ASSERT_TRUE(judgement.halves_chi2);
+    EXPECT_LT(*judgement.halves_chi2, 27.9);
+  }
+}
+
+TEST(Judge, NamesWhatTheMotionLacks) {
+  for (std::uint32_t seed = 0; seed < 3; ++seed) {
+    EXPECT_EQ(problem_of(synthetic::still, seed), MotionProblem::kNoMotion);
+    EXPECT_EQ(problem_of(synthetic::translation_only, seed), MotionProblem::kInsufficientRotation);
+    EXPECT_EQ(problem_of(synthetic::about_camera_centre, seed), MotionProblem::kNoParallax);
+    EXPECT_EQ(problem_of(synthetic::one_axis, seed), MotionProblem::kSingleAxis);
+    EXPECT_EQ(problem_of(synthetic::pivot, seed), MotionProblem::kFixedPoint);
+  }
+}
+
+TEST(Judge, RefusesWhatIsTooUncertain) {
+  const Recording recording = record(scope(), synthetic::free_hand, 300, tracker_and_camera(), 1);
+  JudgeOptions options;
+  options.wanted_rotation_deg = 0.001;
+  options.wanted_translation_mm = 10;
+  const auto result = maximum_likelihood(recording.observations);
+  EXPECT_EQ(judge(recording.observations, result, options).problem, MotionProblem::kUncertain);
+}
+
+/// The camera slips in its clip half-way: a small residual on either half, but not the same answer.
+TEST(Judge, RefusesWhenTheHalvesDisagree) {
+  Recording recording = record(scope(), synthetic::free_hand, 400, tracker_and_camera(), 2);
+  Pose slip = Pose::Identity();
+  slip.linear() = exp_so3({0, 0, rad_from_deg(1.0)});
+  for (std::size_t k = 200; k < recording.observations.size(); ++k) {
+    Pose& eye = recording.observations[k].poses.eye_from_scene;
+    eye = slip * eye;
+  }
+  const Judgement judgement = judged(recording.observations);
+  ASSERT_TRUE(judgement.halves_chi2);
+  EXPECT_GT(*judgement.halves_chi2, 27.9);
+  EXPECT_EQ(judgement.problem, MotionProblem::kUncertain);
+}
+
+TEST(Judge, NamesTheMotionOfTheHandAlone) {
+  const auto classified = [](const synthetic::Motion& motion, bool no_parallax = false) {
+    std::vector<Pose> hand;
+    for (const auto& o : record(scope(), motion, 300, tracker_and_camera(), 3).observations) {
+      hand.push_back(o.poses.room_from_hand);
+    }
+    return classify_hand_motion(hand, tracker_and_camera(), no_parallax);
+  };
+  EXPECT_EQ(classified(synthetic::still), MotionProblem::kNoMotion);
+  EXPECT_EQ(classified(synthetic::still, true), MotionProblem::kNoMotion);
+  EXPECT_EQ(classified(synthetic::translation_only), MotionProblem::kInsufficientRotation);
+  EXPECT_EQ(classified(synthetic::about_camera_centre, true), MotionProblem::kNoParallax);
+  EXPECT_EQ(classified(synthetic::one_axis), MotionProblem::kSingleAxis);
+  EXPECT_EQ(classified(synthetic::pivot), MotionProblem::kFixedPoint);
+  EXPECT_EQ(classified(synthetic::free_hand), MotionProblem::kNone);
+  EXPECT_EQ(classify_hand_motion({}, tracker_and_camera()), MotionProblem::kNoMotion);
+}
+
+TEST(Judge, RefusesTheRealLaparoscopeAsAFixedPoint) {
+  const auto poses = synthetic::real_poses("laparoscope.csv");
+  if (poses.empty()) GTEST_SKIP() << "no poses/laparoscope.csv";
+  std::vector<HandEyeObservation> observations;
+  for (const PosePair& pair : poses) observations.push_back({pair, {0, 0, 0}, {0, 0, 0}});
+  EXPECT_EQ(judged(observations).problem, MotionProblem::kFixedPoint);
+}
+
+}  // namespace
+}  // namespace handeye

@@ -32,7 +32,7 @@ class CameraJson {
     } catch (const json::out_of_range&) {
       fail("", "a number in it is out of range; correct or calibrate anew");
     }
-    if (!document_.is_object()) fail("", "must be an object {\"width\":..., \"fx\":...}");
+    if (!document_.is_object()) fail("", R"(must be an object {"width":..., "fx":...})");
   }
 
   int integer(const char* key) const {

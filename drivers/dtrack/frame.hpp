@@ -126,7 +126,7 @@ struct Frame {
   std::optional<std::int32_t>
       calibrated_bodies;  ///< 6dcal, less old-format Flysticks and tools, >= 0
   std::optional<std::int32_t> calibrated_hands;  ///< glcal
-  std::vector<Body> bodies;                      ///< 6d and 6di; by id, each id once
+  std::vector<Body> bodies;                      ///< 6d and 6di; each id once, 6d first
   std::vector<BodyCovariance> covariances;
   std::vector<Flystick> flysticks;
   std::vector<MeasurementTool> tools;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/dtrack/line_context.hpp"
 
-#include <ranges>
+#include <algorithm>
 
 namespace handeye::dtrack {
 namespace {
@@ -9,7 +9,8 @@ namespace {
 /// Backwards: the pools are stacks, so each element gets its own memory back in the next frame.
 template <typename Element>
 void release_all(std::vector<Element>& elements, LineMemory& memory) {
-  for (Element& element : std::views::reverse(elements)) release(element, memory);
+  std::for_each(elements.rbegin(), elements.rend(),
+                [&](Element& element) { release(element, memory); });
   elements.clear();
 }
 

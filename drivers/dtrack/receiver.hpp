@@ -46,7 +46,9 @@ class Receiver {
   /// refuses, above all a port in use.
   explicit Receiver(const ReceiverOptions& options);
   Receiver(const Receiver&) = delete;
+  Receiver(Receiver&&) = delete;
   Receiver& operator=(const Receiver&) = delete;
+  Receiver& operator=(Receiver&&) = delete;
   ~Receiver();
 
   std::uint16_t port() const { return port_; }  ///< the actual one

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 
 namespace handeye::dtrack {
 namespace {
 
-/// Numbers of up to 15 digits are integers a double holds exactly, as are these powers; then one
-/// IEEE division rounds correctly (Clinger, "How to read floating point numbers accurately", 1990).
+/// Integers of up to 15 digits are exact as doubles, as are these powers; then one IEEE
+/// multiplication or division rounds correctly (Clinger, "How to read floating point numbers
+/// accurately", 1990).
 constexpr std::array kPowersOfTen = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 constexpr std::ptrdiff_t kExactDigits = 15;
@@ -56,12 +58,21 @@ bool Scanner::read(double& value) {
     decimals = at - point - 1;
     digit_count += decimals;
   }
-  const bool has_exponent = at != end_ && (*at == 'e' || *at == 'E');
-  if (digit_count == 0 || digit_count > kExactDigits || has_exponent) {
+  std::int32_t power_of_ten = 0;
+  if (at != end_ && (*at == 'e' || *at == 'E')) {
+    ++at;
+    if (end_ - at > 1 && at[0] == '+' && digit(at[1]) < 10) ++at;
+    const auto [behind, problem] = std::from_chars(at, end_, power_of_ten);
+    if (problem != std::errc{}) return read_any_precision(value);
+    at = behind;
+  }
+  const std::ptrdiff_t scale = power_of_ten - decimals;
+  if (digit_count == 0 || digit_count > kExactDigits || std::abs(scale) > kExactDigits) {
     return read_any_precision(value);
   }
-  const double magnitude =
-      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+  const double power = kPowersOfTen[static_cast<std::size_t>(std::abs(scale))];
+  const auto whole = static_cast<double>(digits);
+  const double magnitude = scale < 0 ? whole / power : whole * power;
   value = negative ? -magnitude : magnitude;
   at_ = at;
   return end_value();

@@ -31,7 +31,9 @@ class ListUpdate {
   ListUpdate(std::vector<Element>& list, LineContext& context)
       : list_(list), context_(context), first_(list.size()) {}
   ListUpdate(const ListUpdate&) = delete;
+  ListUpdate(ListUpdate&&) = delete;
   ListUpdate& operator=(const ListUpdate&) = delete;
+  ListUpdate& operator=(ListUpdate&&) = delete;
   ~ListUpdate() { erase(first_, committed_ ? first_ : list_.size()); }
 
   Element& append() { return list_.emplace_back(); }

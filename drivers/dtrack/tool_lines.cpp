@@ -56,7 +56,7 @@ Target read_old_tool(Scanner& line, MeasurementTool& tool, LineMemory& memory) {
     return Target::kFailed;
   }
   if (word != 0) tool.buttons = memory.buttons.take();
-  append_buttons(word, std::bit_width(word), tool.buttons);
+  append_buttons(word, static_cast<std::int32_t>(std::bit_width(word)), tool.buttons);
   return set_pose(matrix, position_mm, tool);
 }
 

@@ -14,7 +14,9 @@ class UdpSocket {
   /// Throws UsageError or InputError as Receiver does.
   explicit UdpSocket(const ReceiverOptions& options);
   UdpSocket(const UdpSocket&) = delete;
+  UdpSocket(UdpSocket&&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
+  UdpSocket& operator=(UdpSocket&&) = delete;
   ~UdpSocket();
 
   int descriptor() const { return descriptor_; }

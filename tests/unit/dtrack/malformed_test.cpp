@@ -166,8 +166,9 @@ TEST(DTrackMalformed, Row13_IntegersThatWouldWrap) {
 }
 
 TEST(DTrackMalformed, Row14_NumbersThatAreNone) {
-  for (const std::string bad : {"nan", "-nan", "inf", "-inf", "infinity", "0x1p3", "0x10", "1e",
-                                "--1", "+1", "-", ".", "1.0.0", "1-2", "abc"}) {
+  for (const std::string bad :
+       {"nan",   "-nan", "inf", "-inf", "infinity", "0x1p3", "0x10", "1e",    "1e+", "1e-",
+        "1e+-2", "1e5x", "e5",  "--1",  "+1",       "-",     ".",    "1.0.0", "1-2", "abc"}) {
     expect_line_refused("6d 1 " + body("0", bad), ErrorKind::kBadNumber);
   }
   expect_line_refused("6d 1 " + body("0", "1e999"), ErrorKind::kNumberOutOfRange);

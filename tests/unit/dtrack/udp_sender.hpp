@@ -30,7 +30,9 @@ class UdpSender {
     setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
   UdpSender(const UdpSender&) = delete;
+  UdpSender(UdpSender&&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
+  UdpSender& operator=(UdpSender&&) = delete;
   ~UdpSender() { close(descriptor_); }
 
   std::uint16_t port() const {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -41,10 +42,10 @@ class Bus {
   void subscribe(const std::string& channel, std::function<void(const Message&)> handler) {
     subscribe_raw(channel, [this, handler = std::move(handler), message = Message()](
                                const void* data, std::uint32_t size) mutable {
-      if (message.decode(data, 0, static_cast<int>(size)) < 0) {
-        ++undecodable_;
-      } else {
+      if (decodes(message, data, size)) {
         handler(message);
+      } else {
+        ++undecodable_;
       }
     });
   }
@@ -64,6 +65,16 @@ class Bus {
   lcm::LCM& lcm() { return *lcm_; }
 
  private:
+  /// The generated code believes whatever length a message claims, and throws when that is absurd.
+  template <typename Message>
+  static bool decodes(Message& message, const void* data, std::uint32_t size) {
+    try {
+      return message.decode(data, 0, static_cast<int>(size)) >= 0;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+
   using RawHandler = std::function<void(const void* data, std::uint32_t size)>;
   void subscribe_raw(const std::string& channel, RawHandler handler);
 

@@ -124,7 +124,6 @@ CalibrationResult Calibration::solve() {
   write_estimate(found, result);
   result.reason = reason_to_refuse({.frames_received = frames_,
                                     .hand_path = hand_path_.room_from_hand(),
-                                    .hand_samples = hand_.size(),
                                     .reconstruction = reconstruction,
                                     .estimate = found,
                                     .noise = options_.noise,

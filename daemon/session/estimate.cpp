@@ -48,7 +48,7 @@ Estimate estimate(std::span<const RegisteredFrame> frames, const PoseBuffer& han
     result.time_offset_s = result.correlation->time_offset_s;
     result.time_offset_sigma_s = result.correlation->sigma_s;
   }
-  MaximumLikelihoodOptions options;
+  MaximumLikelihoodOptions& options = result.options;
   options.noise = noise;
   // Without a correlation there was too little rotation to refine an offset either.
   options.estimate_time_offset = result.correlation.has_value();

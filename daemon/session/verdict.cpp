@@ -1,11 +1,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/verdict.hpp"
 
+#include "daemon/handeye/judge.hpp"
+
 namespace handeye {
+namespace {
+
+// Fewer poses than this determine nothing, whatever they are.
+constexpr std::size_t kFewestObservations = 10;
+// Below this share of frames with a visible hand, an uncertain answer is the tracker's fault.
+constexpr double kSeenEnough = 0.5;
+
+Reason reason_of(MotionProblem problem) {
+  switch (problem) {
+    case MotionProblem::kNone: return Reason::kNone;
+    case MotionProblem::kNoMotion: return Reason::kNoMotion;
+    case MotionProblem::kInsufficientRotation: return Reason::kInsufficientRotation;
+    case MotionProblem::kNoParallax: return Reason::kNoParallax;
+    case MotionProblem::kSingleAxis: return Reason::kSingleAxis;
+    case MotionProblem::kFixedPoint: return Reason::kFixedPoint;
+    case MotionProblem::kUncertain: break;
+  }
+  return Reason::kUncertain;
+}
+
+/// Why there is nothing to solve from: the motion's fault before the images'.
+Reason reason_without_reconstruction(const Evidence& evidence) {
+  const bool no_parallax = evidence.reconstruction.state == ReconstructionState::kNoParallax;
+  const MotionProblem problem =
+      classify_hand_motion(evidence.hand_path, evidence.noise, no_parallax);
+  if (problem != MotionProblem::kNone) return reason_of(problem);
+  return no_parallax ? Reason::kNoParallax : Reason::kTooFewFeatures;
+}
+
+MotionProblem judged(const Evidence& evidence) {
+  JudgeOptions options;
+  options.wanted_rotation_deg = evidence.wanted.rotation_deg;
+  options.wanted_translation_mm = evidence.wanted.translation_mm;
+  options.solver = evidence.estimate.options;
+  return judge(evidence.estimate.observations, evidence.estimate.likelihood, options).problem;
+}
+
+}  // namespace
 
 Reason reason_to_refuse(const Evidence& evidence) {
   if (evidence.frames_received == 0) return Reason::kCameraLost;
-  return Reason::kUncertain;
+  if (evidence.hand_path.empty()) return Reason::kTrackerLost;
+  if (evidence.reconstruction.frames.empty()) return reason_without_reconstruction(evidence);
+  const std::size_t seen = evidence.estimate.observations.size();
+  if (seen < kFewestObservations) return Reason::kTrackerLost;
+
+  const MotionProblem problem = judged(evidence);
+  if (problem != MotionProblem::kNone && problem != MotionProblem::kUncertain) {
+    return reason_of(problem);
+  }
+  if (!evidence.estimate.correlation) return Reason::kClockUnstable;
+  const auto registered = static_cast<double>(evidence.reconstruction.frames.size());
+  if (problem == MotionProblem::kUncertain && static_cast<double>(seen) < kSeenEnough * registered) {
+    return Reason::kTrackerLost;
+  }
+  return reason_of(problem);
 }
 
 }  // namespace handeye

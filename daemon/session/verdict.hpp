@@ -15,7 +15,6 @@ namespace handeye {
 struct Evidence {
   std::int64_t frames_received{0};
   std::span<const Pose> hand_path;  ///< room_from_hand, wherever it was tracked
-  std::size_t hand_samples{0};
   const Reconstruction& reconstruction;
   const Estimate& estimate;
   PoseNoise noise;  ///< of the tracker

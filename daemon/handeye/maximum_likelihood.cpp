@@ -139,6 +139,9 @@ Estimate estimate_from(std::span<const HandEyeObservation> observations,
                                               : options.huber * (assumed - 0.5 * options.huber);
   }
   Eigen::MatrixXd information = jacobian.transpose() * jacobian;
+  if (options.estimate_scale) {
+    information(12, 12) += 1.0 / (options.log_scale_prior * options.log_scale_prior);
+  }
   if (options.estimate_time_offset) {
     information(p - 1, p - 1) += 1.0 / (options.time_offset_prior_s * options.time_offset_prior_s);
   }

@@ -20,7 +20,8 @@ struct MaximumLikelihoodOptions {
   bool estimate_noise{true};
   bool account_for_correlation{true};  ///< inflate the covariance by what the residuals show ///<
                                        ///< from the residuals (variance components)
-  bool estimate_scale{true};         ///< false: the start's scale is exact
+  bool estimate_scale{true};           ///< false: the start's scale is exact
+  double log_scale_prior{0.5};  ///< standard deviation about the start: keeps a free scale finite
   bool estimate_time_offset{false};  ///< needs velocities
   double time_offset_prior_s{0.05};  ///< standard deviation of the correction before the data
   double huber{4.0};   ///< of a whitened residual's norm (6 dof): touches 1.4 % of inliers

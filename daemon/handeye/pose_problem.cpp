@@ -30,12 +30,12 @@ Eigen::Quaternion<T> rotation_by(const Vector3<T>& w) {
   return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
 }
 
-/// Keeps the time offset near the one that the poses were looked up with.
-struct TimeOffsetPrior {
-  double sigma_s;
+/// Keeps a correction near zero where the data say nothing.
+struct Prior {
+  double sigma;
   template <typename T>
-  bool operator()(const T* time_offset, T* residual) const {
-    residual[0] = time_offset[0] / sigma_s;
+  bool operator()(const T* correction, T* residual) const {
+    residual[0] = correction[0] / sigma;
     return true;
   }
 };
@@ -121,14 +121,16 @@ void PoseProblem::solve(const Matrix6d& whitening) {
   }
   problem.SetManifold(hand_from_eye_.coeffs().data(), new ceres::EigenQuaternionManifold);
   problem.SetManifold(room_from_scene_.coeffs().data(), new ceres::EigenQuaternionManifold);
-  if (!options_.estimate_scale) problem.SetParameterBlockConstant(&log_scale_);
-  if (options_.estimate_time_offset) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<TimeOffsetPrior, 1, 1>(
-                                 new TimeOffsetPrior{options_.time_offset_prior_s}),
-                             nullptr, &time_offset_s_);
-  } else {
-    problem.SetParameterBlockConstant(&time_offset_s_);
-  }
+  const auto free_or_fixed = [&](double* correction, bool free, double sigma) {
+    if (free) {
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior, 1, 1>(new Prior{sigma}),
+                               nullptr, correction);
+    } else {
+      problem.SetParameterBlockConstant(correction);
+    }
+  };
+  free_or_fixed(&log_scale_, options_.estimate_scale, options_.log_scale_prior);
+  free_or_fixed(&time_offset_s_, options_.estimate_time_offset, options_.time_offset_prior_s);
 
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;

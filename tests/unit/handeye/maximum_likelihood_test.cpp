@@ -202,7 +202,18 @@ TEST(MaximumLikelihood, FreesTheScaleOfTheRealViconPoses) {
   ASSERT_TRUE(found);
   RecordProperty("scale", std::to_string(found->solution.scale_units_per_mm));
   EXPECT_GT(found->solution.scale_units_per_mm, 0.97);
-  EXPECT_LT(found->solution.scale_units_per_mm, 1.03);
+  EXPECT_LT(found->solution.scale_units_per_mm, 1.01);
+}
+
+TEST(MaximumLikelihood, FreesTheScaleOfTheRealRobotPoses) {
+  const auto poses = synthetic::real_poses("moveit.csv");
+  if (poses.empty()) GTEST_SKIP() << "no poses/moveit.csv";
+  const auto found = maximum_likelihood(observed(poses));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->solution.scale_units_per_mm, 1.0, 0.01);
+  const Residuals residuals = seed_residuals(poses, found->solution);
+  EXPECT_LT(residuals.rotation_deg, 0.2);
+  EXPECT_LT(residuals.translation_percent, 5.0);
 }
 
 }  // namespace

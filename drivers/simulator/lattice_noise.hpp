@@ -18,7 +18,7 @@ cv::Mat1f subdivide(const cv::Mat1f& coefficients);
 cv::Mat1f spline_noise(int lattice_size, int size, RandomStream& random);
 
 struct FractalOptions {
-  int first_lattice{8};    ///< coarsest octave
+  int first_lattice{8};    ///< coarsest octave, at most the field's size
   int last_lattice{1024};  ///< finest octave, at most the field's size
   double gain{0.5};        ///< amplitude of an octave relative to the next coarser one
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/simulator/live.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -22,6 +23,9 @@ namespace {
 
 /// Frames that exist at a time: rendering runs ahead by so many less the one being published.
 constexpr int kFramesInFlight = 4;
+
+/// Five years of frames at 25 Hz.
+constexpr auto kEndlessFrames = std::numeric_limits<std::uint32_t>::max();
 
 using FramePointer = std::unique_ptr<SimulatedFrame>;
 
@@ -75,13 +79,16 @@ void LiveDevices::send_datagrams(const std::stop_token& stop) {
 
 void LiveDevices::render_frames(const std::stop_token& stop) {
   std::int64_t cost_ns = 0;
-  for (std::uint32_t number = 0; endoscope_.exposure_s(number) < duration_s_; ++number) {
+  const double frames = duration_s_ * world_->options.camera_rate_hz;
+  const auto end =
+      frames < kEndlessFrames ? static_cast<std::uint32_t>(std::ceil(frames)) : kEndlessFrames;
+  for (std::uint32_t number = 0; number < end; ++number) {
     auto frame = empty_.take(stop);
     if (!frame) return;
-    const std::uint32_t in_time = first_in_time(number, cost_ns);
+    const std::uint32_t in_time = std::min(first_in_time(number, cost_ns), end);
     skipped_ += in_time - number;
     number = in_time;
-    if (endoscope_.exposure_s(number) >= duration_s_) break;
+    if (number == end) break;
     const std::int64_t begin_ns = monotonic_ns();
     endoscope_.make(number, **frame);
     cost_ns = monotonic_ns() - begin_ns;

@@ -2,6 +2,7 @@
 #include "drivers/simulator/record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <limits>
 #include <span>
@@ -68,7 +69,8 @@ DeviceCounts record(const World& world, double duration_s, const std::filesystem
   };
 
   FrameBatches batches(world);
-  const auto frames = static_cast<std::uint32_t>(duration_s * world.options.camera_rate_hz);
+  const auto frames =
+      static_cast<std::uint32_t>(std::ceil(duration_s * world.options.camera_rate_hz));
   for (std::uint32_t first = 0; first < frames;) {
     for (const SimulatedFrame& frame : batches.make(first, frames)) {
       write_datagrams_until(frame.arrival_ns);

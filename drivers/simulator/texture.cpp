@@ -73,14 +73,17 @@ Texture::Texture(std::uint64_t seed, const TextureOptions& options)
   subdivide(paint(half, options.tile_mm / half, random)).convertTo(fine, CV_8U, 255.0);
   fine_.assign(fine.begin(), fine.end());
 
-  coarse_.resize(static_cast<std::size_t>(half) * static_cast<std::size_t>(half));
-  auto out = coarse_.begin();
-  for (int row = 0; row < half; ++row) {
-    const std::uint8_t* top = fine[2 * row];
-    const std::uint8_t* bottom = fine[2 * row + 1];
-    for (int i = 0; i < half; ++i) {
-      const int sum = top[2 * i] + top[2 * i + 1] + bottom[2 * i] + bottom[2 * i + 1];
-      *out++ = static_cast<std::uint8_t>((sum + 2) / 4);
+  // Centred on every second texel, about which the refined lattice is symmetric: so both levels
+  // show the same things at the same place.
+  coarse_.reserve(static_cast<std::size_t>(half) * static_cast<std::size_t>(half));
+  for (int row = 0; row < options.texels; row += 2) {
+    const std::uint8_t* above = fine[(row - 1) & mask_];
+    const std::uint8_t* here = fine[row];
+    const std::uint8_t* below = fine[row + 1];
+    const auto column_sum = [&](int i) { return above[i] + 2 * here[i] + below[i]; };
+    for (int i = 0; i < options.texels; i += 2) {
+      const int sum = column_sum((i - 1) & mask_) + 2 * column_sum(i) + column_sum(i + 1);
+      coarse_.push_back(static_cast<std::uint8_t>((sum + 8) / 16));
     }
   }
 }

@@ -10,7 +10,7 @@ namespace handeye::simulator {
 
 struct TextureOptions {
   double tile_mm{409.6};  ///< period along x and y
-  int texels{4096};       ///< along a side of the tile, a power of two; 0.1 mm a texel
+  int texels{4096};       ///< along a side of the tile, a power of two from 2048
 };
 
 /// How bright the surface is where (its albedo, 0..255), like the lining of a body cavity: mottled,
@@ -28,9 +28,7 @@ class Texture {
     const float fine = bilinear(fine_, mask_, shift_, u, v);
     const float coarse_part = (footprint_mm * texels_per_mm_ - kFineTexels) / kBlendTexels;
     if (coarse_part <= 0) return fine;
-    // A texel of the coarse level lies amid four fine ones.
-    const float coarse =
-        bilinear(coarse_, mask_ >> 1, shift_ - 1, 0.5F * u - 0.25F, 0.5F * v - 0.25F);
+    const float coarse = bilinear(coarse_, mask_ >> 1, shift_ - 1, 0.5F * u, 0.5F * v);
     return coarse_part >= 1 ? coarse : fine + coarse_part * (coarse - fine);
   }
 
@@ -68,7 +66,7 @@ class Texture {
   }
 
   std::vector<std::uint8_t> fine_;
-  std::vector<std::uint8_t> coarse_;  ///< 2x2 means of the fine level
+  std::vector<std::uint8_t> coarse_;  ///< weighted means around every second texel
   int mask_;
   int shift_;
   float texels_per_mm_;

@@ -13,7 +13,8 @@ namespace handeye::simulator {
 namespace {
 
 nlohmann::ordered_json pose_json(const Pose& pose) {
-  const Eigen::Quaterniond q(pose.linear());
+  Eigen::Quaterniond q(pose.linear());
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
   const Eigen::Vector3d t = pose.translation();
   return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t_mm", {t.x(), t.y(), t.z()}}};
 }

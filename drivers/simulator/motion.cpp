@@ -56,8 +56,8 @@ double Wander::at(double time_s) const {
   return std::sin(angle);
 }
 
-Motion::Motion(std::uint64_t seed, const Eigen::Vector3d& target, const MotionOptions& options)
-    : options_(options), target_(target) {
+Motion::Motion(std::uint64_t seed, Eigen::Vector3d target, const MotionOptions& options)
+    : options_(options), target_(std::move(target)) {
   RandomStream random(seed, Purpose::kMotion);
   for (int axis = 0; axis < 3; ++axis) turns_.emplace_back(random);
   for (int axis = 0; axis < 3; ++axis) shifts_.emplace_back(random);

@@ -55,7 +55,7 @@ class Wander {
 class Motion {
  public:
   /// `target`: the surface point looked at, in surface coordinates.
-  Motion(std::uint64_t seed, const Eigen::Vector3d& target, const MotionOptions& options = {});
+  Motion(std::uint64_t seed, Eigen::Vector3d target, const MotionOptions& options = {});
 
   /// Time 0 is the start of the simulation.
   Pose surface_from_eye(double time_s) const;

@@ -18,11 +18,13 @@ struct ReconstructionOptions {
   double max_reprojection_px{2.0};  ///< a point or an observation beyond it is an outlier
   double min_triangulation_deg{2.0};
   int min_resection_inliers{15};
-  double keyframe_parallax_px{8};  ///< median movement since the last keyframe that makes a new one
-  int max_keyframes{200};          ///< beyond it keyframes are thinned evenly
-  int local_window{8};             ///< keyframes adjusted when one is added
-  double robust_px{1.5};           ///< Huber loss of the adjustments
-  int threads{1};                  ///< Ceres with two is not reproducible
+  double min_resection_ratio{0.3};  ///< inliers among the points a frame sees
+  double keyframe_parallax_px{
+      24};                 ///< median movement since the last keyframe that makes a new one
+  int max_keyframes{200};  ///< beyond it keyframes are thinned evenly
+  int local_window{8};     ///< keyframes adjusted when one is added
+  double robust_px{1.5};   ///< Huber loss of the adjustments
+  int threads{1};          ///< Ceres with two is not reproducible
 };
 
 /// A frame whose camera pose is known.

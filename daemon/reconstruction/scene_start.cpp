@@ -19,11 +19,13 @@ constexpr double kStillPx = 2.0;
 /// A rotation that explains this share of the features explains the movement.
 constexpr double kRotationRatio = 0.8;
 /// Share of the features that must obey the motion between the two views.
-constexpr double kMinMotionRatio = 0.6;
+constexpr double kMinMotionRatio = 0.4;
+/// Two views fit many a motion; those between them are what refutes a wrong one.
+constexpr std::size_t kFewestFrames = 4;
 constexpr int kMaxMotions = 5;
 constexpr int kFramesBetween = 4;
 /// Share of the observations that the adjusted scene must explain.
-constexpr double kMinInlierRatio = 0.7;
+constexpr double kMinInlierRatio = 0.5;
 /// The winner's error must be smaller by this factor than any other motion's.
 constexpr double kClearMargin = 1.2;
 constexpr double kSameRotationRad = 0.02;
@@ -66,7 +68,7 @@ Scene scene_from_motion(const CameraModel& camera, const ReconstructionOptions& 
   Scene scene;
   scene.add_keyframe(camera, frames.front(), Pose::Identity(), 0.0);
   const ResectionOptions resection{options.max_reprojection_px, options.robust_px,
-                                   options.min_resection_inliers, 0.5};
+                                   options.min_resection_inliers, options.min_resection_ratio};
   std::vector<PointMatch> matches;
   const std::size_t last = frames.size() - 1;
   for (std::size_t step = 1; step <= kFramesBetween; ++step) {
@@ -145,7 +147,10 @@ StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions&
                          std::span<const FrameRecord> frames) {
   StartAttempt attempt;
   const auto pairs = common_features(frames.front(), frames.back());
-  if (static_cast<int>(pairs.size()) < options.min_common_features) return attempt;
+  if (static_cast<int>(pairs.size()) < options.min_common_features ||
+      frames.size() < kFewestFrames) {
+    return attempt;
+  }
   if (median_movement_px(camera, pairs) < kStillPx) {
     attempt.state = ReconstructionState::kNoMotion;
     return attempt;
@@ -156,6 +161,7 @@ StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions&
     attempt.state = ReconstructionState::kNoParallax;
     return attempt;
   }
+  attempt.costly = true;
   auto motions = two_view_motions(rays, threshold_rad);
   std::erase_if(motions, [](const auto& motion) { return motion.inlier_ratio < kMinMotionRatio; });
   if (motions.empty()) return attempt;

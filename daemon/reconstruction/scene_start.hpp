@@ -12,6 +12,7 @@
 namespace handeye {
 
 struct StartAttempt {
+  bool costly{false};  ///< got as far as computing motions: not to be repeated for every frame
   /// kTracking with a scene; else why there is none.
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
   std::optional<Scene>

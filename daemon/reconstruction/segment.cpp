@@ -19,7 +19,8 @@ constexpr int kWindowIterations = 6;
 constexpr int kMaxRounds = 4;
 
 ResectionOptions resection_options(const ReconstructionOptions& options) {
-  return {options.max_reprojection_px, options.robust_px, options.min_resection_inliers, 0.5};
+  return {options.max_reprojection_px, options.robust_px, options.min_resection_inliers,
+          options.min_resection_ratio};
 }
 
 PointOptions point_options(const ReconstructionOptions& options) {

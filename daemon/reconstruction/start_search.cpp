@@ -59,7 +59,7 @@ StartAttempt StartSearch::look(const std::vector<FrameRecord>& frames) {
     attempt = start_scene(camera_, options_, std::span(frames).subspan(oldest));
     if (attempt.scene) return attempt;
   }
-  if (attempt.state != ReconstructionState::kNoMotion) attempted_ = frames.size() - 1;
+  if (attempt.costly) attempted_ = frames.size() - 1;
   last_state_ = attempt.state;
   return attempt;
 }

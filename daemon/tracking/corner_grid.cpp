@@ -9,8 +9,8 @@
 namespace handeye {
 namespace {
 
-constexpr int kBlockPx = 5;   ///< window of the structure tensor
-constexpr int kMarginPx = 4;  ///< around a cell, so that its rim sees true gradients
+constexpr int kBlockPx = 9;   ///< window of the structure tensor
+constexpr int kMarginPx = 6;  ///< around a cell, so that its rim sees true gradients
 constexpr int kBorderPx = 6;  ///< of the image, without corners
 /// Highlights saturate and move with the light: perfect corners of nothing. A corner keeps away.
 constexpr int kSaturated = 250;

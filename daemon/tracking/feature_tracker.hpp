@@ -23,13 +23,17 @@ struct TrackedFrame {
   std::vector<Observation> observations;
 };
 
+/// Images wider than 1280 px are worked on at half their size or less, lightly smoothed: the optics
+/// of an endoscope resolve no more than that, and the grain of camera and video coder, which stands
+/// still while the scene moves, holds features back.
 struct TrackerOptions {
   int max_features{300};
-  int window_px{0};         ///< side of the compared patch, odd; 0: by the image's width, 21 up to 1280 px
-  int pyramid_levels{0};    ///< beyond the image itself; 0: by the image's width, 4 up to 1280 px
-  double min_distance_px{10};          ///< between features when new ones are sought
-  double quality{0.01};                ///< weakest corner accepted, of the strongest in the image
-  double max_forward_backward_px{0.5}; ///< tracked back it must land this near to where it began
+  int window_px{
+      0};  ///< side of the compared patch at the working size, odd; 0: 21, where shrunk 31
+  int pyramid_levels{4};       ///< beyond the working image itself
+  double min_distance_px{10};  ///< between features when new ones are sought, in the given image
+  double quality{0.01};        ///< weakest corner accepted, of the strongest in the image
+  double max_forward_backward_px{0.5};  ///< tracked back it must land this near to where it began
 };
 
 /// Follows features from frame to frame. One thread; frames in order of time.

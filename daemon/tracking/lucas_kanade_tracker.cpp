@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <optional>
 
 #include <opencv2/imgproc.hpp>
@@ -8,53 +8,50 @@
 
 #include "daemon/tracking/corner_grid.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
+#include "daemon/tracking/round_trip_flow.hpp"
+#include "daemon/tracking/working_image.hpp"
 
 namespace handeye {
 namespace {
 
-constexpr int kIterations = 30;
-constexpr double kConvergencePx = 0.01;
-/// Smallest eigenvalue of the patch's normal matrix (OpenCV's measure) that LK accepts.
-constexpr double kMinEigenvalue = 1e-4;
-/// Cells looked at per frame for new features, as a share: empty cells without texture would
-/// otherwise cost a full detection in every frame.
-constexpr int kCellsShare = 6;
-/// A cell more than features wanted: some are empty of texture, others hold two.
+constexpr int kWindowPx = 21;
+constexpr int kShrunkWindowPx = 31;
+/// Cells looked at per frame for new features, as a fraction of all: empty cells without texture
+/// would otherwise cost a full detection in every frame.
+constexpr int kCellsFraction = 6;
+/// More cells than features wanted: some are empty of texture, others hold two.
 constexpr double kCellsPerFeature = 1.1;
-/// The widths up to which the basic window and number of levels are right.
-constexpr int kBasicWidth = 1280;
+
+constexpr int kNoReference = -1;
+constexpr int kReferences = 6;          ///< images kept to compare with
+constexpr int kReferenceLevels = 1;     ///< of the pyramid: the start is near
+constexpr double kOrphanShare = 0.2;    ///< features without reference that are worth a new one
+constexpr double kMaxCorrectionPx = 3;  ///< a feature farther off than that has slid away
 
 struct Feature {
   std::int64_t id{0};
-  cv::Point2f pixel;
-  cv::Point2f velocity;  ///< px per frame, of the last movement
-  float strength{0};     ///< as a corner, when it was found
+  cv::Point2f pixel;            ///< at the working size, as all here
+  cv::Point2f velocity;         ///< px per frame, of the last movement
+  float strength{0};            ///< as a corner, when it was found
+  int reference{kNoReference};  ///< the image that it is compared with
+  cv::Point2f reference_pixel;  ///< where it was there
+  bool lost{false};
 };
-
-int odd(double value) {
-  return 2 * static_cast<int>(std::lround((value - 1.0) / 2.0)) + 1;
-}
-
-TrackerOptions adapted(TrackerOptions options, cv::Size size) {
-  const bool large = size.width > kBasicWidth;
-  if (options.window_px <= 0) {
-    options.window_px = large ? odd(21.0 * size.width / kBasicWidth) : 21;
-  }
-  if (options.pyramid_levels <= 0) options.pyramid_levels = large ? 5 : 4;
-  return options;
-}
 
 class LucasKanadeTracker final : public FeatureTracker {
  public:
-  explicit LucasKanadeTracker(const TrackerOptions& options) : given_options_(options) {}
+  explicit LucasKanadeTracker(const TrackerOptions& options) : options_(options) {}
 
   void track(const cv::Mat& grey, const cv::Mat& mask, std::int64_t timestamp_ns,
              TrackedFrame& tracked) override {
-    if (!grid_) begin(grey.size());
-    update_usable(mask);
-    build_pyramid(grey);
-    if (frames_ > 0) follow();
-    top_up(grey);
+    if (!working_) begin(grey.size());
+    if (!grid_ || mask_changed(mask)) use_mask(mask);
+    const cv::Mat& image = working_->shrink(grey);
+    cv::buildOpticalFlowPyramid(image, pyramid_, flow_.window(), options_.pyramid_levels);
+    follow();
+    correct_drift();
+    top_up(image);
+    renew_references(image);
     std::swap(pyramid_, last_pyramid_);
     report(timestamp_ns, tracked);
     ++frames_;
@@ -62,94 +59,111 @@ class LucasKanadeTracker final : public FeatureTracker {
 
  private:
   void begin(cv::Size size) {
-    options_ = adapted(given_options_, size);
-    grid_.emplace(size, static_cast<int>(kCellsPerFeature * options_.max_features),
-                  options_.min_distance_px);
-    size_ = size;
+    working_.emplace(size);
+    const int automatic_px = working_->is_shrunk() ? kShrunkWindowPx : kWindowPx;
+    flow_.set_window(options_.window_px > 0 ? options_.window_px : automatic_px);
+  }
+
+  bool mask_changed(const cv::Mat& mask) const {
+    if (mask.empty() || mask_.empty()) return mask.empty() != mask_.empty();
+    return cv::norm(mask, mask_, cv::NORM_INF) != 0;
   }
 
   /// The whole patch must lie in the mask: its rim does not move with the scene.
-  void update_usable(const cv::Mat& mask) {
-    if (mask.empty()) {
-      usable_.release();
-      mask_.release();
+  void use_mask(const cv::Mat& mask) {
+    mask.copyTo(mask_);
+    usable_.release();
+    double usable_share = 1.0;
+    if (!mask.empty()) {
+      cv::erode(working_->shrink_mask(mask), usable_,
+                cv::getStructuringElement(cv::MORPH_RECT, flow_.window()));
+      usable_share =
+          std::max(0.01, cv::countNonZero(usable_) / static_cast<double>(working_->size().area()));
+    }
+    grid_.emplace(working_->size(),
+                  static_cast<int>(kCellsPerFeature * options_.max_features / usable_share),
+                  options_.min_distance_px / working_->scale());
+  }
+
+  /// From the last image, starting where constant velocity takes each feature.
+  void follow() {
+    select([](const Feature&) { return true; });
+    for (const std::size_t i : selected_) {
+      from_.push_back(features_[i].pixel);
+      to_.push_back(features_[i].pixel + features_[i].velocity);
+    }
+    flow_.run(last_pyramid_, pyramid_, options_.pyramid_levels, options_.max_forward_backward_px,
+              from_, to_, good_);
+    for (std::size_t k = 0; k < selected_.size(); ++k) {
+      Feature& feature = features_[selected_[k]];
+      feature.lost = good_[k] == 0 || !is_usable(to_[k]);
+      feature.velocity = to_[k] - from_[k];
+      feature.pixel = to_[k];
+    }
+    drop_lost();
+  }
+
+  /// From frame to frame, small errors add up. So each feature is also compared with an image that
+  /// it was seen in earlier: what remains is one comparison's error, however long it lives.
+  void correct_drift() {
+    for (int reference = 0; reference < kReferences; ++reference) {
+      select([reference](const Feature& feature) { return feature.reference == reference; });
+      for (const std::size_t i : selected_) {
+        from_.push_back(features_[i].reference_pixel);
+        to_.push_back(features_[i].pixel);
+      }
+      flow_.run(references_[static_cast<std::size_t>(reference)], pyramid_, kReferenceLevels,
+                options_.max_forward_backward_px, from_, to_, good_);
+      for (std::size_t k = 0; k < selected_.size(); ++k) {
+        correct(to_[k], good_[k] != 0, features_[selected_[k]]);
+      }
+    }
+    drop_lost();
+  }
+
+  void correct(cv::Point2f pixel, bool good, Feature& feature) const {
+    if (!good || !is_usable(pixel)) {
+      feature.reference = kNoReference;  // it looks different by now
       return;
     }
-    if (!mask_.empty() && cv::norm(mask, mask_, cv::NORM_INF) == 0) return;
-    mask.copyTo(mask_);
-    const cv::Mat patch =
-        cv::getStructuringElement(cv::MORPH_RECT, {options_.window_px, options_.window_px});
-    cv::erode(mask, usable_, patch);
+    const cv::Point2f correction = pixel - feature.pixel;
+    feature.lost = cv::norm(correction) > kMaxCorrectionPx;
+    feature.velocity += correction;
+    feature.pixel = pixel;
   }
 
-  void build_pyramid(const cv::Mat& grey) {
-    cv::buildOpticalFlowPyramid(grey, pyramid_, window(), options_.pyramid_levels);
-  }
-
-  cv::Size window() const { return {options_.window_px, options_.window_px}; }
-
-  /// Forward from where constant velocity takes each feature, then back; who does not come home is
-  /// lost.
-  void follow() {
-    if (features_.empty()) return;
-    before_.clear();
-    after_.clear();
-    for (const Feature& feature : features_) {
-      before_.push_back(feature.pixel);
-      after_.push_back(feature.pixel + feature.velocity);
-    }
-    run(last_pyramid_, pyramid_, before_, after_, found_);
-    back_.clear();
+  template <typename Predicate>
+  void select(const Predicate& predicate) {
+    selected_.clear();
+    from_.clear();
+    to_.clear();
     for (std::size_t i = 0; i < features_.size(); ++i) {
-      back_.push_back(after_[i] - features_[i].velocity);
+      if (predicate(features_[i])) selected_.push_back(i);
     }
-    run(pyramid_, last_pyramid_, after_, back_, found_back_);
-    keep_survivors();
   }
 
-  void run(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
-           const std::vector<cv::Point2f>& start, std::vector<cv::Point2f>& end,
-           std::vector<std::uint8_t>& found) {
-    cv::calcOpticalFlowPyrLK(
-        from, to, start, end, found, errors_, window(), options_.pyramid_levels,
-        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kIterations, kConvergencePx},
-        cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  }
-
-  void keep_survivors() {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < features_.size(); ++i) {
-      const cv::Point2f missed_home = back_[i] - before_[i];
-      const bool good = found_[i] != 0 && found_back_[i] != 0 &&
-                        cv::norm(missed_home) <= options_.max_forward_backward_px &&
-                        is_usable(after_[i]);
-      if (!good) continue;
-      Feature feature = features_[i];
-      feature.velocity = after_[i] - before_[i];
-      feature.pixel = after_[i];
-      features_[kept++] = feature;
-    }
-    features_.resize(kept);
+  void drop_lost() {
+    std::erase_if(features_, [](const Feature& feature) { return feature.lost; });
   }
 
   bool is_usable(cv::Point2f pixel) const {
     const cv::Point nearest(cvRound(pixel.x), cvRound(pixel.y));
-    if (!cv::Rect({0, 0}, size_).contains(nearest)) return false;
+    if (!cv::Rect({0, 0}, working_->size()).contains(nearest)) return false;
     return usable_.empty() || usable_.at<std::uint8_t>(nearest) != 0;
   }
 
-  void top_up(const cv::Mat& grey) {
+  void top_up(const cv::Mat& image) {
     const int room = options_.max_features - static_cast<int>(features_.size());
     if (room <= 0) return;
-    before_.clear();
+    from_.clear();
     float strongest = 0;
     for (const Feature& feature : features_) {
-      before_.push_back(feature.pixel);
+      from_.push_back(feature.pixel);
       strongest = std::max(strongest, feature.strength);
     }
     const bool starving = static_cast<int>(features_.size()) < options_.max_features / 2;
-    const int cells = starving ? grid_->cell_count() : grid_->cell_count() / kCellsShare;
-    grid_->detect(grey, usable_, before_, cells, corners_);
+    const int cells = starving ? grid_->cell_count() : grid_->cell_count() / kCellsFraction;
+    grid_->detect(image, usable_, from_, cells, corners_);
     for (const Corner& corner : corners_) strongest = std::max(strongest, corner.strength);
     std::erase_if(corners_, [&](const Corner& corner) {
       return corner.strength < static_cast<float>(options_.quality) * strongest;
@@ -160,8 +174,29 @@ class LucasKanadeTracker final : public FeatureTracker {
       corners_.resize(static_cast<std::size_t>(room));
     }
     for (const Corner& corner : corners_) {
-      features_.push_back({next_id_++, corner.pixel, {0, 0}, corner.strength});
+      Feature feature;
+      feature.id = next_id_++;
+      feature.pixel = corner.pixel;
+      feature.strength = corner.strength;
+      features_.push_back(feature);
     }
+  }
+
+  /// When many features lack a reference, this image becomes theirs, in place of the oldest.
+  void renew_references(const cv::Mat& image) {
+    const auto orphans =
+        std::count_if(features_.begin(), features_.end(),
+                      [](const Feature& feature) { return feature.reference == kNoReference; });
+    const double worthwhile = kOrphanShare * static_cast<double>(features_.size());
+    if (static_cast<double>(orphans) <= worthwhile) return;
+    cv::buildOpticalFlowPyramid(image, references_[static_cast<std::size_t>(next_reference_)],
+                                flow_.window(), kReferenceLevels);
+    for (Feature& feature : features_) {
+      if (feature.reference != kNoReference && feature.reference != next_reference_) continue;
+      feature.reference = next_reference_;
+      feature.reference_pixel = feature.pixel;
+    }
+    next_reference_ = (next_reference_ + 1) % kReferences;
   }
 
   void report(std::int64_t timestamp_ns, TrackedFrame& tracked) const {
@@ -169,25 +204,27 @@ class LucasKanadeTracker final : public FeatureTracker {
     tracked.index = frames_;
     tracked.observations.clear();
     for (const Feature& feature : features_) {
-      tracked.observations.push_back({feature.id, {feature.pixel.x, feature.pixel.y}});
+      tracked.observations.push_back({feature.id, working_->to_given(feature.pixel)});
     }
   }
 
-  TrackerOptions given_options_;
   TrackerOptions options_;
-  cv::Size size_;
+  RoundTripFlow flow_;
+  std::optional<WorkingImage> working_;
   std::optional<CornerGrid> grid_;
-  cv::Mat mask_;
-  cv::Mat usable_;  ///< mask_ shrunk by half a patch
+  cv::Mat mask_;    ///< as last given
+  cv::Mat usable_;  ///< the same at the working size, shrunk by half a patch
   std::int64_t frames_{0};
   std::int64_t next_id_{0};
   std::vector<Feature> features_;  ///< ordered by id: survivors keep their order, new ones follow
   std::vector<cv::Mat> pyramid_;
   std::vector<cv::Mat> last_pyramid_;
-  // Scratch, kept so that a frame allocates nothing.
-  std::vector<cv::Point2f> before_, after_, back_;
-  std::vector<std::uint8_t> found_, found_back_;
-  std::vector<float> errors_;
+  std::array<std::vector<cv::Mat>, kReferences> references_;
+  int next_reference_{0};
+  // Scratch, kept so that a frame allocates next to nothing.
+  std::vector<std::size_t> selected_;
+  std::vector<cv::Point2f> from_, to_;
+  std::vector<std::uint8_t> good_;
   std::vector<Corner> corners_;
 };
 

@@ -12,7 +12,7 @@
 #include "client/cli/options.hpp"
 #include "client/cli/result_output.hpp"
 #include "client/cli/status_text.hpp"
-#include "client/library/calibration.hpp"
+#include "client/library/remote_calibration.hpp"
 #include "daemon/session/result_message.hpp"
 
 namespace handeye::cli {
@@ -38,7 +38,8 @@ CalibrationLimits limits_of(const CalibrateOptions& options) {
   return limits;
 }
 
-void show_progress(ProgressLine& progress, const Client& client, const Calibration& calibration) {
+void show_progress(ProgressLine& progress, const Client& client,
+                   const RemoteCalibration& calibration) {
   const auto& status = client.last_status();
   if (status && status->request_id == calibration.request_id()) {
     progress.show(progress_text(*status));
@@ -51,7 +52,7 @@ std::optional<CalibrationOutcome> run_to_its_end(Client& client, Interrupt& inte
                                                  const CalibrateOptions& options) {
   ProgressLine progress;
   progress.show("waiting for the daemon ... (Ctrl-C cancels)");
-  Calibration calibration(client, options.start, limits_of(options));
+  RemoteCalibration calibration(client, options.start, limits_of(options));
   bool cancelling = false;
   while (!calibration.outcome()) {
     if (interrupt.wait(client.file_descriptor(), milliseconds(50))) {

@@ -65,9 +65,7 @@ int main(int argc, char** argv) {
   add_cancel_command(app, action);
   add_pose_command(app, action);
   add_record_command(app, action);
-#ifdef HANDEYE_CLI_REPLAY
   add_replay_command(app, action);
-#endif
   add_compare_command(app, action);
   try {
     app.parse(argc, argv);

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <handeye/request_t.hpp>
-#include <handeye/result_t.hpp>
-#include <handeye/status_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <handeye/request_t.hpp>
+#include <handeye/result_t.hpp>
+#include <handeye/status_t.hpp>
 
 #include "protocol/channels.hpp"
 

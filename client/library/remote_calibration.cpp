@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "client/library/calibration.hpp"
+#include "client/library/remote_calibration.hpp"
 
 #include <utility>
 
@@ -31,8 +31,9 @@ std::string seconds(milliseconds duration) {
 
 }  // namespace
 
-Calibration::Calibration(Client& client, const StartRequest& wanted,
-                         const CalibrationLimits& limits, Client::StatusHandler on_status)
+RemoteCalibration::RemoteCalibration(Client& client, const StartRequest& wanted,
+                                     const CalibrationLimits& limits,
+                                     Client::StatusHandler on_status)
     : client_(client),
       limits_(limits),
       on_status_(std::move(on_status)),
@@ -42,7 +43,7 @@ Calibration::Calibration(Client& client, const StartRequest& wanted,
   client_.on_result([this](const result_t& result) { take_result(result); });
 }
 
-Calibration::~Calibration() {
+RemoteCalibration::~RemoteCalibration() {
   client_.on_status({});
   client_.on_result({});
   client_.abandon(request_id_);
@@ -51,7 +52,7 @@ Calibration::~Calibration() {
   }
 }
 
-bool Calibration::spin_once(milliseconds timeout) {
+bool RemoteCalibration::spin_once(milliseconds timeout) {
   const bool handled = client_.spin_once(timeout);
   const auto now = Clock::now();
   if (!outcome_) ask_for_the_result(now);
@@ -60,12 +61,12 @@ bool Calibration::spin_once(milliseconds timeout) {
   return handled;
 }
 
-void Calibration::finish() {
+void RemoteCalibration::finish() {
   if (finish_id_ || cancel_id_ || outcome_) return;
   finish_id_ = client_.finish(request_id_);
 }
 
-void Calibration::cancel() {
+void RemoteCalibration::cancel() {
   if (cancel_id_ || outcome_) return;
   // A START that is still unheard must not be heard after the CANCEL.
   client_.stop_repeating(request_id_);
@@ -73,7 +74,7 @@ void Calibration::cancel() {
   cancelled_ = Clock::now();
 }
 
-void Calibration::take_status(const status_t& status) {
+void RemoteCalibration::take_status(const status_t& status) {
   last_status_ = Clock::now();
   if (on_status_) on_status_(status);
   if (outcome_) return;
@@ -91,21 +92,21 @@ void Calibration::take_status(const status_t& status) {
   if (has_ended(status) && !result_due_) result_due_ = *last_status_ + limits_.describe_period;
 }
 
-void Calibration::take_acknowledgement() {
+void RemoteCalibration::take_acknowledgement() {
   acknowledgement_ = client_.acknowledgement(request_id_);
   if (acknowledgement_ && !acknowledgement_->taken()) {
     end(Kind::kRequestRefused, acknowledgement_->text);
   }
 }
 
-void Calibration::take_result(const result_t& result) {
+void RemoteCalibration::take_result(const result_t& result) {
   if (outcome_ || result.request_id != request_id_) return;
   end(kind_of(result), "");
   outcome_->result = result;
 }
 
 /// Ours is over when STATUS says so, or when it tells of another one after ours.
-bool Calibration::has_ended(const status_t& status) {
+bool RemoteCalibration::has_ended(const status_t& status) {
   if (status.request_id == request_id_) {
     seen_running_ = true;
     seen_cancelled_ = status.session_state == status_t::CANCELLED;
@@ -114,7 +115,7 @@ bool Calibration::has_ended(const status_t& status) {
   return seen_running_;
 }
 
-void Calibration::ask_for_the_result(Clock::time_point now) {
+void RemoteCalibration::ask_for_the_result(Clock::time_point now) {
   if (!result_due_ || now < *result_due_) return;
   if (seen_cancelled_) {
     // Nothing in the RESULT of a cancelled calibration is worth waiting for.
@@ -127,7 +128,7 @@ void Calibration::ask_for_the_result(Clock::time_point now) {
   result_due_ = now + limits_.describe_period;
 }
 
-void Calibration::check_cancellation(Clock::time_point now) {
+void RemoteCalibration::check_cancellation(Clock::time_point now) {
   if (!cancel_id_) return;
   const auto answer = client_.acknowledgement(*cancel_id_);
   if (!answer) {
@@ -141,7 +142,7 @@ void Calibration::check_cancellation(Clock::time_point now) {
   if (!acknowledgement_) end(Kind::kCancelled, "cancelled before the daemon had begun");
 }
 
-void Calibration::check_limits(Clock::time_point now) {
+void RemoteCalibration::check_limits(Clock::time_point now) {
   const auto waited = now - started_;
   if (!last_status_) {
     if (waited > limits_.first_status) {
@@ -169,14 +170,14 @@ void Calibration::check_limits(Clock::time_point now) {
   }
 }
 
-void Calibration::end(Kind kind, std::string text) {
+void RemoteCalibration::end(Kind kind, std::string text) {
   outcome_ = CalibrationOutcome{kind, request_id_, std::move(text), std::nullopt, acknowledgement_};
   client_.abandon(request_id_);
 }
 
 CalibrationOutcome calibrate(Client& client, const StartRequest& wanted,
                              const CalibrationLimits& limits, Client::StatusHandler on_status) {
-  Calibration calibration(client, wanted, limits, std::move(on_status));
+  RemoteCalibration calibration(client, wanted, limits, std::move(on_status));
   while (!calibration.outcome()) calibration.spin_once(milliseconds(50));
   return *calibration.outcome();
 }

@@ -54,16 +54,16 @@ struct CalibrationOutcome {
 ///
 /// While it lives it owns the client's two handlers. At a time-out after the acknowledgement it
 /// tells the daemon to cancel, since nobody waits any more.
-class Calibration {
+class RemoteCalibration {
  public:
   using Kind = CalibrationOutcome::Kind;
 
   /// Sends START. on_status may be empty; it is called with every STATUS heard.
-  Calibration(Client& client, const StartRequest& wanted, const CalibrationLimits& limits = {},
-              Client::StatusHandler on_status = {});
-  ~Calibration();
-  Calibration(const Calibration&) = delete;
-  Calibration& operator=(const Calibration&) = delete;
+  RemoteCalibration(Client& client, const StartRequest& wanted,
+                    const CalibrationLimits& limits = {}, Client::StatusHandler on_status = {});
+  ~RemoteCalibration();
+  RemoteCalibration(const RemoteCalibration&) = delete;
+  RemoteCalibration& operator=(const RemoteCalibration&) = delete;
 
   /// Waits at most `timeout` for one message and acts on it and on what has become due.
   /// True: a message was handled, there may be more.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "client/library/calibration.hpp"
+#include "client/library/remote_calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ void begin(ScriptedDaemon& daemon, const request_t& request) {
   daemon.status().max_duration_s = 30;
 }
 
-class CalibrationTest : public ::testing::Test {
+class RemoteCalibrationTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const auto problem = test::lcm_problem()) GTEST_SKIP() << *problem;
@@ -44,7 +44,7 @@ class CalibrationTest : public ::testing::Test {
   CalibrationLimits limits_;
 };
 
-TEST_F(CalibrationTest, EndsWithTheResult) {
+TEST_F(RemoteCalibrationTest, EndsWithTheResult) {
   for (const auto& [verdict, kind] : {std::pair{+result_t::ACCEPTED, Kind::kAccepted},
                                       std::pair{+result_t::REFUSED, Kind::kRefused},
                                       std::pair{+result_t::CANCELLED, Kind::kCancelled}}) {
@@ -60,7 +60,7 @@ TEST_F(CalibrationTest, EndsWithTheResult) {
   }
 }
 
-TEST_F(CalibrationTest, IgnoresTheResultOfAnother) {
+TEST_F(RemoteCalibrationTest, IgnoresTheResultOfAnother) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     begin(self, request);
     self.send_result(test::result_message(request.request_id ^ 1, result_t::ACCEPTED));
@@ -70,7 +70,7 @@ TEST_F(CalibrationTest, IgnoresTheResultOfAnother) {
   EXPECT_EQ(outcome.kind, Kind::kRefused);
 }
 
-TEST_F(CalibrationTest, AsksAgainForALostResultUntilItComes) {
+TEST_F(RemoteCalibrationTest, AsksAgainForALostResultUntilItComes) {
   int described = 0;
   ScriptedDaemon daemon(provider_, [&](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::START) {
@@ -90,7 +90,7 @@ TEST_F(CalibrationTest, AsksAgainForALostResultUntilItComes) {
   EXPECT_GE(daemon.distinct_ids(request_t::DESCRIBE).size(), 2u);
 }
 
-TEST_F(CalibrationTest, AsksForTheResultWhenTheNextCalibrationHasBegun) {
+TEST_F(RemoteCalibrationTest, AsksForTheResultWhenTheNextCalibrationHasBegun) {
   std::int64_t ours = 0;
   ScriptedDaemon daemon(provider_, [&](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::START) {
@@ -106,8 +106,8 @@ TEST_F(CalibrationTest, AsksForTheResultWhenTheNextCalibrationHasBegun) {
     }
   });
   Client client(client_options_);
-  Calibration* running = nullptr;
-  Calibration calibration(client, {}, limits_, [&](const status_t& status) {
+  RemoteCalibration* running = nullptr;
+  RemoteCalibration calibration(client, {}, limits_, [&](const status_t& status) {
     if (status.request_id == running->request_id()) running->finish();
   });
   running = &calibration;
@@ -115,7 +115,7 @@ TEST_F(CalibrationTest, AsksForTheResultWhenTheNextCalibrationHasBegun) {
   EXPECT_EQ(calibration.outcome()->kind, Kind::kAccepted);
 }
 
-TEST_F(CalibrationTest, TellsWhyTheRequestWasRefused) {
+TEST_F(RemoteCalibrationTest, TellsWhyTheRequestWasRefused) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     self.acknowledge(request, status_t::ACK_BUSY, "calibration 5 is running");
   });
@@ -126,18 +126,18 @@ TEST_F(CalibrationTest, TellsWhyTheRequestWasRefused) {
   EXPECT_EQ(outcome.acknowledgement->code, +status_t::ACK_BUSY);
 }
 
-TEST_F(CalibrationTest, TellsThatNoDaemonIsThere) {
+TEST_F(RemoteCalibrationTest, TellsThatNoDaemonIsThere) {
   limits_.first_status = milliseconds(150);
   EXPECT_EQ(run().kind, Kind::kNoStatus);
 }
 
-TEST_F(CalibrationTest, TellsThatTheDaemonDoesNotAnswer) {
+TEST_F(RemoteCalibrationTest, TellsThatTheDaemonDoesNotAnswer) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon&, const request_t&) {});
   limits_.acknowledgement = milliseconds(300);
   EXPECT_EQ(run().kind, Kind::kNotAcknowledged);
 }
 
-TEST_F(CalibrationTest, GivesUpAtTheTimeLimitAndCancels) {
+TEST_F(RemoteCalibrationTest, GivesUpAtTheTimeLimitAndCancels) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::START) begin(self, request);
   });
@@ -152,7 +152,7 @@ TEST_F(CalibrationTest, GivesUpAtTheTimeLimitAndCancels) {
   EXPECT_EQ(daemon.distinct_ids(request_t::CANCEL).size(), 1u);
 }
 
-TEST_F(CalibrationTest, WithoutALimitOfItsOwnItWaitsAsLongAsStatusSays) {
+TEST_F(RemoteCalibrationTest, WithoutALimitOfItsOwnItWaitsAsLongAsStatusSays) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     begin(self, request);
     self.status().max_duration_s = 0.3;
@@ -164,12 +164,12 @@ TEST_F(CalibrationTest, WithoutALimitOfItsOwnItWaitsAsLongAsStatusSays) {
   EXPECT_GE(std::chrono::steady_clock::now() - began, milliseconds(500));
 }
 
-TEST_F(CalibrationTest, TellsThatTheDaemonWasRestarted) {
+TEST_F(RemoteCalibrationTest, TellsThatTheDaemonWasRestarted) {
   auto first = std::make_unique<ScriptedDaemon>(
       provider_, [](ScriptedDaemon& self, const request_t& request) { begin(self, request); });
   Client client(client_options_);
   bool running = false;
-  Calibration calibration(client, {}, limits_, [&](const status_t& status) {
+  RemoteCalibration calibration(client, {}, limits_, [&](const status_t& status) {
     running = running || status.session_state == status_t::COLLECTING;
   });
   while (!running && !calibration.outcome()) calibration.spin_once(milliseconds(5));
@@ -180,13 +180,13 @@ TEST_F(CalibrationTest, TellsThatTheDaemonWasRestarted) {
   EXPECT_TRUE(second.distinct_ids(request_t::START).empty());
 }
 
-TEST_F(CalibrationTest, TellsThatTheDaemonFellSilent) {
+TEST_F(RemoteCalibrationTest, TellsThatTheDaemonFellSilent) {
   auto daemon = std::make_unique<ScriptedDaemon>(
       provider_, [](ScriptedDaemon& self, const request_t& request) { begin(self, request); });
   limits_.silence = milliseconds(300);
   Client client(client_options_);
   bool running = false;
-  Calibration calibration(client, {}, limits_, [&](const status_t& status) {
+  RemoteCalibration calibration(client, {}, limits_, [&](const status_t& status) {
     running = running || status.session_state == status_t::COLLECTING;
   });
   while (!running && !calibration.outcome()) calibration.spin_once(milliseconds(5));
@@ -195,7 +195,7 @@ TEST_F(CalibrationTest, TellsThatTheDaemonFellSilent) {
   EXPECT_EQ(calibration.outcome()->kind, Kind::kTimedOut);
 }
 
-TEST_F(CalibrationTest, CancelWaitsForTheConfirmation) {
+TEST_F(RemoteCalibrationTest, CancelWaitsForTheConfirmation) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::START) {
       begin(self, request);
@@ -205,8 +205,8 @@ TEST_F(CalibrationTest, CancelWaitsForTheConfirmation) {
     }
   });
   Client client(client_options_);
-  Calibration* running = nullptr;
-  Calibration calibration(client, {}, limits_, [&](const status_t& status) {
+  RemoteCalibration* running = nullptr;
+  RemoteCalibration calibration(client, {}, limits_, [&](const status_t& status) {
     if (status.session_state == status_t::COLLECTING) running->cancel();
   });
   running = &calibration;
@@ -215,14 +215,14 @@ TEST_F(CalibrationTest, CancelWaitsForTheConfirmation) {
   EXPECT_EQ(daemon.distinct_ids(request_t::CANCEL).size(), 1u);
 }
 
-TEST_F(CalibrationTest, CancelBeforeTheDaemonHeardTheStart) {
+TEST_F(RemoteCalibrationTest, CancelBeforeTheDaemonHeardTheStart) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::CANCEL) {
       self.acknowledge(request, status_t::ACK_NOTHING_TO_DO, "no calibration is running");
     }
   });
   Client client(client_options_);
-  Calibration calibration(client, {}, limits_);
+  RemoteCalibration calibration(client, {}, limits_);
   calibration.cancel();
   while (!calibration.outcome()) calibration.spin_once(milliseconds(5));
   EXPECT_EQ(calibration.outcome()->kind, Kind::kCancelled);
@@ -230,14 +230,14 @@ TEST_F(CalibrationTest, CancelBeforeTheDaemonHeardTheStart) {
   EXPECT_LE(daemon.times_heard(calibration.request_id()), 1);
 }
 
-TEST_F(CalibrationTest, AnUnconfirmedCancellationIsNotCalledCancelled) {
+TEST_F(RemoteCalibrationTest, AnUnconfirmedCancellationIsNotCalledCancelled) {
   ScriptedDaemon daemon(provider_, [](ScriptedDaemon& self, const request_t& request) {
     if (request.action == request_t::START) begin(self, request);
   });
   limits_.acknowledgement = milliseconds(300);
   Client client(client_options_);
-  Calibration* running = nullptr;
-  Calibration calibration(client, {}, limits_, [&](const status_t& status) {
+  RemoteCalibration* running = nullptr;
+  RemoteCalibration calibration(client, {}, limits_, [&](const status_t& status) {
     if (status.session_state == status_t::COLLECTING) running->cancel();
   });
   running = &calibration;

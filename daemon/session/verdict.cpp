@@ -7,7 +7,7 @@ namespace handeye {
 namespace {
 
 // Fewer poses than this determine nothing, whatever they are.
-constexpr std::size_t kFewestObservations = 10;
+constexpr std::size_t kFewestPoses = 10;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault.
 constexpr double kSeenEnough = 0.5;
 
@@ -46,9 +46,11 @@ MotionProblem judged(const Evidence& evidence) {
 Reason reason_to_refuse(const Evidence& evidence) {
   if (evidence.frames_received == 0) return Reason::kCameraLost;
   if (evidence.hand_path.empty()) return Reason::kTrackerLost;
-  if (evidence.reconstruction.frames.empty()) return reason_without_reconstruction(evidence);
+  if (evidence.reconstruction.frames.size() < kFewestPoses) {
+    return reason_without_reconstruction(evidence);
+  }
   const std::size_t seen = evidence.estimate.observations.size();
-  if (seen < kFewestObservations) return Reason::kTrackerLost;
+  if (seen < kFewestPoses) return Reason::kTrackerLost;
 
   const MotionProblem problem = judged(evidence);
   if (problem != MotionProblem::kNone && problem != MotionProblem::kUncertain) {

@@ -21,6 +21,16 @@ int cell_side(cv::Size image_size, int cells, double min_distance_px) {
   return std::max(static_cast<int>(std::lround(std::max(side, min_distance_px))), 8);
 }
 
+bool touches_highlight(const cv::Mat& grey, cv::Point2f pixel) {
+  const cv::Rect around =
+      cv::Rect(static_cast<int>(pixel.x) - kHighlightPx, static_cast<int>(pixel.y) - kHighlightPx,
+               2 * kHighlightPx + 1, 2 * kHighlightPx + 1) &
+      cv::Rect({0, 0}, grey.size());
+  double brightest = 0;
+  cv::minMaxLoc(grey(around), nullptr, &brightest);
+  return brightest >= kSaturated;
+}
+
 }  // namespace
 
 CornerGrid::CornerGrid(cv::Size image_size, int cells, double min_distance_px)
@@ -31,7 +41,7 @@ CornerGrid::CornerGrid(cv::Size image_size, int cells, double min_distance_px)
       rows_((image_size.height + cell_px_ - 1) / cell_px_),
       features_of_cell_(static_cast<std::size_t>(columns_ * rows_)) {}
 
-void CornerGrid::detect(const cv::Mat& grey, const cv::Mat& usable,
+void CornerGrid::detect(const cv::Mat& image, const cv::Mat& grey, const cv::Mat& usable,
                         const std::vector<cv::Point2f>& features, int max_cells,
                         std::vector<Corner>& corners) {
   corners.clear();
@@ -43,7 +53,8 @@ void CornerGrid::detect(const cv::Mat& grey, const cv::Mat& usable,
     if (!features_of_cell_[static_cast<std::size_t>(cell)].empty()) continue;
     ++looked_at;
     Corner corner;
-    if (!best_in_cell(grey, usable, cell, corner)) continue;
+    if (!best_in_cell(image, usable, cell, corner) || touches_highlight(grey, corner.pixel))
+      continue;
     corners.push_back(corner);
     features_of_cell_[static_cast<std::size_t>(cell)].push_back(corner.pixel);
   }
@@ -58,7 +69,7 @@ void CornerGrid::occupy(const std::vector<cv::Point2f>& features) {
   }
 }
 
-bool CornerGrid::best_in_cell(const cv::Mat& grey, const cv::Mat& usable, int cell,
+bool CornerGrid::best_in_cell(const cv::Mat& image, const cv::Mat& usable, int cell,
                               Corner& corner) {
   const cv::Rect inside(kBorderPx, kBorderPx, image_size_.width - 2 * kBorderPx,
                         image_size_.height - 2 * kBorderPx);
@@ -70,7 +81,7 @@ bool CornerGrid::best_in_cell(const cv::Mat& grey, const cv::Mat& usable, int ce
   const cv::Rect wide = cv::Rect(area.x - kMarginPx, area.y - kMarginPx, area.width + 2 * kMarginPx,
                                  area.height + 2 * kMarginPx) &
                         cv::Rect({0, 0}, image_size_);
-  cv::cornerMinEigenVal(grey(wide), strength_, kBlockPx);
+  cv::cornerMinEigenVal(image(wide), strength_, kBlockPx);
   corner.strength = 0;
   for (int y = area.y; y < area.br().y; ++y) {
     const float* strength = strength_.ptr<float>(y - wide.y);
@@ -83,14 +94,7 @@ bool CornerGrid::best_in_cell(const cv::Mat& grey, const cv::Mat& usable, int ce
       corner = {pixel, here};
     }
   }
-  if (corner.strength <= 0) return false;
-  const cv::Rect around = cv::Rect(static_cast<int>(corner.pixel.x) - kHighlightPx,
-                                   static_cast<int>(corner.pixel.y) - kHighlightPx,
-                                   2 * kHighlightPx + 1, 2 * kHighlightPx + 1) &
-                          cv::Rect({0, 0}, image_size_);
-  double brightest = 0;
-  cv::minMaxLoc(grey(around), nullptr, &brightest);
-  return brightest < kSaturated;
+  return corner.strength > 0;
 }
 
 bool CornerGrid::is_far_from_all(cv::Point2f pixel, int cell) const {

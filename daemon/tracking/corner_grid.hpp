@@ -20,17 +20,19 @@ class CornerGrid {
   /// `cells` is about how many cells the image is cut into.
   CornerGrid(cv::Size image_size, int cells, double min_distance_px);
 
-  /// Corners in the empty cells of an image, in order of the cells. `usable`: CV_8UC1, 255 where a
-  /// corner may lie, or empty. `features`: what is tracked already; corners keep min_distance_px
-  /// from it. Looks at no more than `max_cells` cells, going on where the last call ended.
-  void detect(const cv::Mat& grey, const cv::Mat& usable, const std::vector<cv::Point2f>& features,
-              int max_cells, std::vector<Corner>& corners);
+  /// Corners in the empty cells of an image, in order of the cells; `grey` is the same before it
+  /// was normalised, to see highlights in. `usable`: CV_8UC1, 255 where a corner may lie, or empty.
+  /// `features`: what is tracked already; corners keep min_distance_px from it. Looks at no more
+  /// than `max_cells` cells, going on where the last call ended.
+  void detect(const cv::Mat& image, const cv::Mat& grey, const cv::Mat& usable,
+              const std::vector<cv::Point2f>& features, int max_cells,
+              std::vector<Corner>& corners);
 
   int cell_count() const { return columns_ * rows_; }
 
  private:
   void occupy(const std::vector<cv::Point2f>& features);
-  bool best_in_cell(const cv::Mat& grey, const cv::Mat& usable, int cell, Corner& corner);
+  bool best_in_cell(const cv::Mat& image, const cv::Mat& usable, int cell, Corner& corner);
   bool is_far_from_all(cv::Point2f pixel, int cell) const;
 
   cv::Size image_size_;

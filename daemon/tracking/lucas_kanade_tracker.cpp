@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
 #include "daemon/tracking/corner_grid.hpp"
+#include "daemon/tracking/drift_correction.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 #include "daemon/tracking/round_trip_flow.hpp"
 #include "daemon/tracking/working_image.hpp"
@@ -22,22 +22,6 @@ constexpr int kCellsFraction = 6;
 /// More cells than features wanted: some are empty of texture, others hold two.
 constexpr double kCellsPerFeature = 1.1;
 
-constexpr int kNoReference = -1;
-constexpr int kReferences = 6;          ///< images kept to compare with
-constexpr int kReferenceLevels = 1;     ///< of the pyramid: the start is near
-constexpr double kOrphanShare = 0.2;    ///< features without reference that are worth a new one
-constexpr double kMaxCorrectionPx = 3;  ///< a feature farther off than that has slid away
-
-struct Feature {
-  std::int64_t id{0};
-  cv::Point2f pixel;            ///< at the working size, as all here
-  cv::Point2f velocity;         ///< px per frame, of the last movement
-  float strength{0};            ///< as a corner, when it was found
-  int reference{kNoReference};  ///< the image that it is compared with
-  cv::Point2f reference_pixel;  ///< where it was there
-  bool lost{false};
-};
-
 class LucasKanadeTracker final : public FeatureTracker {
  public:
   explicit LucasKanadeTracker(const TrackerOptions& options) : options_(options) {}
@@ -46,12 +30,14 @@ class LucasKanadeTracker final : public FeatureTracker {
              TrackedFrame& tracked) override {
     if (!working_) begin(grey.size());
     if (!grid_ || mask_changed(mask)) use_mask(mask);
-    const cv::Mat& image = working_->shrink(grey);
+    working_->prepare(grey);
+    const cv::Mat& image = working_->normalised();
     cv::buildOpticalFlowPyramid(image, pyramid_, flow_.window(), options_.pyramid_levels);
     follow();
-    correct_drift();
-    top_up(image);
-    renew_references(image);
+    drift_correction_.correct(pyramid_, options_.max_forward_backward_px, features_);
+    drop_lost();
+    top_up();
+    drift_correction_.renew(image, features_);
     std::swap(pyramid_, last_pyramid_);
     report(timestamp_ns, tracked);
     ++frames_;
@@ -87,63 +73,27 @@ class LucasKanadeTracker final : public FeatureTracker {
 
   /// From the last image, starting where constant velocity takes each feature.
   void follow() {
-    select([](const Feature&) { return true; });
-    for (const std::size_t i : selected_) {
-      from_.push_back(features_[i].pixel);
-      to_.push_back(features_[i].pixel + features_[i].velocity);
+    from_.clear();
+    to_.clear();
+    for (const Feature& feature : features_) {
+      from_.push_back(feature.pixel);
+      to_.push_back(feature.pixel + feature.velocity);
     }
     flow_.run(last_pyramid_, pyramid_, options_.pyramid_levels, options_.max_forward_backward_px,
               from_, to_, good_);
-    for (std::size_t k = 0; k < selected_.size(); ++k) {
-      Feature& feature = features_[selected_[k]];
-      feature.lost = good_[k] == 0 || !is_usable(to_[k]);
-      feature.velocity = to_[k] - from_[k];
-      feature.pixel = to_[k];
-    }
-    drop_lost();
-  }
-
-  /// From frame to frame, small errors add up. So each feature is also compared with an image that
-  /// it was seen in earlier: what remains is one comparison's error, however long it lives.
-  void correct_drift() {
-    for (int reference = 0; reference < kReferences; ++reference) {
-      select([reference](const Feature& feature) { return feature.reference == reference; });
-      for (const std::size_t i : selected_) {
-        from_.push_back(features_[i].reference_pixel);
-        to_.push_back(features_[i].pixel);
-      }
-      flow_.run(references_[static_cast<std::size_t>(reference)], pyramid_, kReferenceLevels,
-                options_.max_forward_backward_px, from_, to_, good_);
-      for (std::size_t k = 0; k < selected_.size(); ++k) {
-        correct(to_[k], good_[k] != 0, features_[selected_[k]]);
-      }
-    }
-    drop_lost();
-  }
-
-  void correct(cv::Point2f pixel, bool good, Feature& feature) const {
-    if (!good || !is_usable(pixel)) {
-      feature.reference = kNoReference;  // it looks different by now
-      return;
-    }
-    const cv::Point2f correction = pixel - feature.pixel;
-    feature.lost = cv::norm(correction) > kMaxCorrectionPx;
-    feature.velocity += correction;
-    feature.pixel = pixel;
-  }
-
-  template <typename Predicate>
-  void select(const Predicate& predicate) {
-    selected_.clear();
-    from_.clear();
-    to_.clear();
     for (std::size_t i = 0; i < features_.size(); ++i) {
-      if (predicate(features_[i])) selected_.push_back(i);
+      Feature& feature = features_[i];
+      feature.lost = good_[i] == 0;
+      feature.velocity = to_[i] - from_[i];
+      feature.pixel = to_[i];
     }
+    drop_lost();
   }
 
   void drop_lost() {
-    std::erase_if(features_, [](const Feature& feature) { return feature.lost; });
+    std::erase_if(features_, [this](const Feature& feature) {
+      return feature.lost || !is_usable(feature.pixel);
+    });
   }
 
   bool is_usable(cv::Point2f pixel) const {
@@ -152,7 +102,7 @@ class LucasKanadeTracker final : public FeatureTracker {
     return usable_.empty() || usable_.at<std::uint8_t>(nearest) != 0;
   }
 
-  void top_up(const cv::Mat& image) {
+  void top_up() {
     const int room = options_.max_features - static_cast<int>(features_.size());
     if (room <= 0) return;
     from_.clear();
@@ -163,7 +113,7 @@ class LucasKanadeTracker final : public FeatureTracker {
     }
     const bool starving = static_cast<int>(features_.size()) < options_.max_features / 2;
     const int cells = starving ? grid_->cell_count() : grid_->cell_count() / kCellsFraction;
-    grid_->detect(image, usable_, from_, cells, corners_);
+    grid_->detect(working_->normalised(), working_->grey(), usable_, from_, cells, corners_);
     for (const Corner& corner : corners_) strongest = std::max(strongest, corner.strength);
     std::erase_if(corners_, [&](const Corner& corner) {
       return corner.strength < static_cast<float>(options_.quality) * strongest;
@@ -182,23 +132,6 @@ class LucasKanadeTracker final : public FeatureTracker {
     }
   }
 
-  /// When many features lack a reference, this image becomes theirs, in place of the oldest.
-  void renew_references(const cv::Mat& image) {
-    const auto orphans =
-        std::count_if(features_.begin(), features_.end(),
-                      [](const Feature& feature) { return feature.reference == kNoReference; });
-    const double worthwhile = kOrphanShare * static_cast<double>(features_.size());
-    if (static_cast<double>(orphans) <= worthwhile) return;
-    cv::buildOpticalFlowPyramid(image, references_[static_cast<std::size_t>(next_reference_)],
-                                flow_.window(), kReferenceLevels);
-    for (Feature& feature : features_) {
-      if (feature.reference != kNoReference && feature.reference != next_reference_) continue;
-      feature.reference = next_reference_;
-      feature.reference_pixel = feature.pixel;
-    }
-    next_reference_ = (next_reference_ + 1) % kReferences;
-  }
-
   void report(std::int64_t timestamp_ns, TrackedFrame& tracked) const {
     tracked.timestamp_ns = timestamp_ns;
     tracked.index = frames_;
@@ -210,6 +143,7 @@ class LucasKanadeTracker final : public FeatureTracker {
 
   TrackerOptions options_;
   RoundTripFlow flow_;
+  DriftCorrection drift_correction_{flow_};
   std::optional<WorkingImage> working_;
   std::optional<CornerGrid> grid_;
   cv::Mat mask_;    ///< as last given
@@ -219,10 +153,7 @@ class LucasKanadeTracker final : public FeatureTracker {
   std::vector<Feature> features_;  ///< ordered by id: survivors keep their order, new ones follow
   std::vector<cv::Mat> pyramid_;
   std::vector<cv::Mat> last_pyramid_;
-  std::array<std::vector<cv::Mat>, kReferences> references_;
-  int next_reference_{0};
   // Scratch, kept so that a frame allocates next to nothing.
-  std::vector<std::size_t> selected_;
   std::vector<cv::Point2f> from_, to_;
   std::vector<std::uint8_t> good_;
   std::vector<Corner> corners_;

@@ -10,7 +10,7 @@ constexpr int kIterations = 30;
 constexpr double kConvergencePx = 0.01;
 /// Smallest eigenvalue of a patch's normal matrix (OpenCV's measure) that can be located: below it,
 /// grain holds the patch as firmly as the texture moves it.
-constexpr double kMinEigenvalue = 1e-3;
+constexpr double kMinEigenvalue = 4e-4;
 
 }  // namespace
 

@@ -6,11 +6,13 @@
 
 namespace handeye {
 
-/// The size at which the tracker works: that of the images, or a half, a quarter... of it for wide
-/// ones.
+/// What the tracker sees of an image: wide images shrunk to a half, a quarter... of their size, and
+/// every image divided by its local mean. The light of an endoscope moves with the camera, so the
+/// shading stands still in the image while the scene moves; undivided it drags every feature along,
+/// a few hundredths of a pixel a frame, which adds up to pixels.
 class WorkingImage {
  public:
-  /// Widest image that is worked on as it is [px].
+  /// Widest image that is worked on at its own size [px].
   static constexpr int kMaxWidth = 1280;
 
   explicit WorkingImage(cv::Size given);
@@ -21,8 +23,14 @@ class WorkingImage {
   /// Given px per working px.
   double scale() const { return static_cast<double>(given_.width) / size_.width; }
 
-  /// The image at the working size, smoothed where shrunk; the given one itself where not.
-  const cv::Mat& shrink(const cv::Mat& grey);
+  /// Takes the next image (CV_8UC1 of the given size).
+  void prepare(const cv::Mat& grey);
+
+  /// At the working size as it was given; highlights are still bright in it.
+  const cv::Mat& grey() const { return grey_; }
+
+  /// At the working size over the local mean: CV_8UC1, the mean at 128.
+  const cv::Mat& normalised() const { return normalised_; }
 
   /// A mask at the working size.
   cv::Mat shrink_mask(const cv::Mat& mask) const;
@@ -31,9 +39,13 @@ class WorkingImage {
   Eigen::Vector2d to_given(cv::Point2f pixel) const;
 
  private:
+  void normalise();
+
   cv::Size given_;
   cv::Size size_;
-  cv::Mat shrunk_;
+  cv::Mat grey_;
+  cv::Mat mean_;
+  cv::Mat normalised_;
 };
 
 }  // namespace handeye

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -72,7 +73,7 @@ bool CameraThread::open(const std::stop_token& stop) {
 }
 
 void CameraThread::stream(const std::stop_token& stop) {
-  bool streaming = false;
+  std::optional<bool> said_usable;
   while (!stop.stop_requested()) {
     if (next_ == nullptr) next_ = frames_.acquire();
     Frame& frame = next_ != nullptr ? *next_ : overflow_;
@@ -84,10 +85,16 @@ void CameraThread::stream(const std::stop_token& stop) {
                   fmt::format("{}: lost, trying again", camera_->description()));
       return;
     }
-    if (status != GrabStatus::kFrame || !has_right_size(frame)) continue;
+    if (status != GrabStatus::kFrame) continue;
+    const bool usable = has_right_size(frame);
+    // Said when it changes, not with every frame.
+    if (said_usable != usable) say(usable, frame);
+    said_usable = usable;
+    if (!usable) {
+      ++wrong_size_;
+      continue;
+    }
     health_.last_ns = monotonic_ns();
-    if (!streaming) health_.set(device_status_t::STREAMING, camera_->description());
-    streaming = true;
     hand_on(frame);
   }
 }
@@ -102,16 +109,21 @@ void CameraThread::hand_on(const Frame& frame) {
   }
 }
 
-bool CameraThread::has_right_size(const Frame& frame) {
-  if (frame.grey.cols == model_.width && frame.grey.rows == model_.height) return true;
-  if (wrong_size_++ == 0) {
-    const std::string text = fmt::format(
-        "{}: sends {}x{}, but the intrinsics are for {}x{}; change one of them",
-        camera_->description(), frame.grey.cols, frame.grey.rows, model_.width, model_.height);
-    spdlog::error("camera: {}", text);
-    health_.set(device_status_t::FAILED, text);
+bool CameraThread::has_right_size(const Frame& frame) const {
+  return frame.grey.cols == model_.width && frame.grey.rows == model_.height;
+}
+
+void CameraThread::say(bool usable, const Frame& frame) {
+  if (usable) {
+    health_.set(device_status_t::STREAMING, camera_->description());
+    return;
   }
-  return false;
+  const std::string text = fmt::format(
+      "{}: sends {}x{}, but the intrinsics are for {}x{}; change one of them",
+      camera_->description(), frame.grey.cols, frame.grey.rows, model_.width, model_.height);
+  // Logged once: two senders on one channel would take turns.
+  if (wrong_size_ == 0) spdlog::error("camera: {}", text);
+  health_.set(device_status_t::FAILED, text);
 }
 
 void CameraThread::count() {
@@ -120,7 +132,7 @@ void CameraThread::count() {
   health_.dropped = static_cast<std::int64_t>(counters.dropped);
   health_.malformed = static_cast<std::int64_t>(counters.malformed) + wrong_size_;
   health_.restarts = counters.opened > 0 ? static_cast<std::int64_t>(counters.opened) - 1 : 0;
-  health_.dropped_queue = static_cast<std::int64_t>(frames_.dropped());
+  health_.dropped_queue = static_cast<std::int64_t>(counters.dropped_queue + frames_.dropped());
 }
 
 }  // namespace handeye

@@ -34,7 +34,8 @@ class CameraThread {
   bool open(const std::stop_token& stop);
   void stream(const std::stop_token& stop);
   void hand_on(const Frame& frame);
-  bool has_right_size(const Frame& frame);
+  bool has_right_size(const Frame& frame) const;
+  void say(bool usable, const Frame& frame);
   void count();
 
   std::unique_ptr<Camera> camera_;

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/device_health.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace handeye {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kStart_ns = 5'000 * kSecond_ns;
+
+/// A device at a steady rate, reported five times a second as the daemon does.
+class SteadyDevice {
+ public:
+  explicit SteadyDevice(double rate_hz) : rate_hz_(rate_hz) {
+    health_.set(device_status_t::STREAMING, "port 5000");
+  }
+
+  device_status_t run(double duration_s) {
+    device_status_t status{};
+    for (double t = 0; t < duration_s; t += 0.2) {
+      now_ns_ += kSecond_ns / 5;
+      received_ += rate_hz_ / 5;
+      health_.received = static_cast<std::int64_t>(received_);
+      if (rate_hz_ > 0) health_.last_ns = now_ns_;
+      status = reporter_.report(health_, now_ns_);
+    }
+    return status;
+  }
+  void change_rate(double rate_hz) { rate_hz_ = rate_hz; }
+  DeviceHealth& health() { return health_; }
+
+ private:
+  DeviceHealth health_;
+  DeviceStatusReporter reporter_{1.0};
+  double rate_hz_;
+  double received_{0};
+  std::int64_t now_ns_{kStart_ns};
+};
+
+TEST(DeviceStatus, OfADeviceThatWasNeverHeard) {
+  DeviceHealth health;
+  health.set(device_status_t::WAITING, "waiting for packets on port 5000");
+  DeviceStatusReporter reporter(1.0);
+  for (int i = 0; i < 20; ++i) {
+    const device_status_t status = reporter.report(health, kStart_ns + i * kSecond_ns / 5);
+    EXPECT_EQ(status.state, device_status_t::WAITING);
+    EXPECT_EQ(status.text, "waiting for packets on port 5000");
+    EXPECT_EQ(status.rate_hz, 0);
+    EXPECT_EQ(status.age_s, -1);
+  }
+}
+
+TEST(DeviceStatus, TellsTheRateOfTheLastSeconds) {
+  SteadyDevice device(60);
+  EXPECT_NEAR(device.run(1).rate_hz, 60, 1);
+  EXPECT_NEAR(device.run(10).rate_hz, 60, 1);
+  device.change_rate(25);
+  EXPECT_NEAR(device.run(3).rate_hz, 25, 1) << "what was before is forgotten";
+}
+
+TEST(DeviceStatus, CallsADeviceSilentAndBack) {
+  SteadyDevice device(60);
+  EXPECT_EQ(device.run(3).state, device_status_t::STREAMING);
+  device.change_rate(0);
+  EXPECT_EQ(device.run(0.8).state, device_status_t::STREAMING) << "not at once";
+  const device_status_t silent = device.run(3);
+  EXPECT_EQ(silent.state, device_status_t::SILENT);
+  EXPECT_NEAR(silent.age_s, 3.8, 0.3);
+  EXPECT_EQ(silent.rate_hz, 0);
+  EXPECT_THAT(silent.text, testing::HasSubstr("port 5000: nothing for"));
+  device.change_rate(60);
+  EXPECT_EQ(device.run(1).state, device_status_t::STREAMING);
+}
+
+TEST(DeviceStatus, DoesNotCallADeviceSilentThatHasFailed) {
+  SteadyDevice device(60);
+  device.run(1);
+  device.health().set(device_status_t::FAILED, "sends 640x480");
+  device.change_rate(0);
+  const device_status_t status = device.run(5);
+  EXPECT_EQ(status.state, device_status_t::FAILED);
+  EXPECT_EQ(status.text, "sends 640x480");
+}
+
+TEST(DeviceStatus, CarriesTheCounters) {
+  DeviceHealth health;
+  health.received = 1;
+  health.dropped = 2;
+  health.dropped_queue = 3;
+  health.malformed = 4;
+  health.restarts = 5;
+  const device_status_t status = DeviceStatusReporter(1.0).report(health, kStart_ns);
+  EXPECT_EQ(status.received, 1);
+  EXPECT_EQ(status.dropped, 2);
+  EXPECT_EQ(status.dropped_queue, 3);
+  EXPECT_EQ(status.malformed, 4);
+  EXPECT_EQ(status.restarts, 5);
+}
+
+}  // namespace
+}  // namespace handeye

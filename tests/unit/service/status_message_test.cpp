@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/status_message.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace handeye {
+namespace {
+
+using testing::HasSubstr;
+
+request_t good_request(std::int32_t action = request_t::START) {
+  request_t message{};
+  message.protocol_version = request_t::VERSION;
+  message.request_id = 42;
+  message.action = action;
+  message.target_request_id = 7;
+  message.body_id = 3;
+  message.wanted_sigma_rotation_deg = 0.2;
+  message.wanted_sigma_translation_mm = 0.8;
+  message.max_duration_s = 20;
+  return message;
+}
+
+std::string problem_with(const request_t& message) {
+  std::string problem;
+  EXPECT_FALSE(read_request(message, problem).has_value());
+  return problem;
+}
+
+TEST(ReadRequest, TakesEveryField) {
+  std::string problem;
+  const auto request = read_request(good_request(), problem);
+  ASSERT_TRUE(request.has_value()) << problem;
+  EXPECT_EQ(request->request_id, 42);
+  EXPECT_EQ(request->action, Action::kStart);
+  EXPECT_EQ(request->target_request_id, 7);
+  EXPECT_EQ(request->body_id, 3);
+  EXPECT_EQ(request->wanted.rotation_deg, 0.2);
+  EXPECT_EQ(request->wanted.translation_mm, 0.8);
+  EXPECT_EQ(request->max_duration_s, 20);
+}
+
+TEST(ReadRequest, KnowsEveryAction) {
+  const std::pair<std::int32_t, Action> kActions[] = {{request_t::START, Action::kStart},
+                                                      {request_t::FINISH, Action::kFinish},
+                                                      {request_t::CANCEL, Action::kCancel},
+                                                      {request_t::DESCRIBE, Action::kDescribe},
+                                                      {request_t::RECORD, Action::kRecord}};
+  for (const auto& [code, action] : kActions) {
+    std::string problem;
+    const auto request = read_request(good_request(code), problem);
+    ASSERT_TRUE(request.has_value()) << code << problem;
+    EXPECT_EQ(request->action, action);
+  }
+}
+
+TEST(ReadRequest, RejectsNonsenseInWords) {
+  for (const std::int32_t action : {-1, 0, 6, 99}) {
+    EXPECT_THAT(problem_with(good_request(action)), HasSubstr(std::to_string(action)));
+  }
+  request_t other_version = good_request();
+  other_version.protocol_version = request_t::VERSION + 1;
+  EXPECT_THAT(problem_with(other_version), HasSubstr("version 1"));
+  request_t no_id = good_request();
+  no_id.request_id = 0;
+  EXPECT_THAT(problem_with(no_id), HasSubstr("request_id"));
+}
+
+TEST(WriteSession, TellsStateRequestAndAcknowledgements) {
+  Session session(SessionDefaults{});
+  status_t status{};
+  write_session(session, status);
+  EXPECT_EQ(status.session_state, status_t::IDLE);
+  EXPECT_EQ(status.request_id, 0);
+  EXPECT_EQ(status.num_acks, 0);
+
+  session.on_request({.request_id = 1, .action = Action::kStart, .max_duration_s = 20});
+  session.on_request({.request_id = 2, .action = Action::kStart});
+  session.refuse({3, AckCode::kBadRequest, "unknown action 99"});
+  session.on_request({.request_id = 4, .action = Action::kDescribe});
+  status = {};
+  write_session(session, status);
+  EXPECT_EQ(status.session_state, status_t::COLLECTING);
+  EXPECT_EQ(status.request_id, 1);
+  EXPECT_EQ(status.max_duration_s, 20);
+  EXPECT_THAT(status.ack_request_id, testing::ElementsAre(4, 3, 2, 1)) << "newest first";
+  EXPECT_THAT(status.ack_code,
+              testing::ElementsAre(status_t::ACK_NOTHING_TO_DO, status_t::ACK_BAD_REQUEST,
+                                   status_t::ACK_BUSY, status_t::ACK_TAKEN));
+  EXPECT_EQ(status.ack_text[3], "");
+  EXPECT_THAT(status.ack_text[2], HasSubstr("1"));
+  EXPECT_GT(status.getEncodedSize(), 0);
+}
+
+TEST(WriteSession, FollowsTheSession) {
+  const std::pair<Verdict, std::int32_t> kEnds[] = {{Verdict::kAccepted, status_t::DONE},
+                                                    {Verdict::kRefused, status_t::REFUSED},
+                                                    {Verdict::kCancelled, status_t::CANCELLED}};
+  Session session(SessionDefaults{});
+  std::int64_t id = 0;
+  for (const auto& [verdict, state] : kEnds) {
+    session.on_request({.request_id = ++id, .action = Action::kStart});
+    session.on_solving();
+    status_t status{};
+    write_session(session, status);
+    EXPECT_EQ(status.session_state, status_t::SOLVING);
+    CalibrationResult result;
+    result.verdict = verdict;
+    session.on_result(result);
+    status = {};
+    write_session(session, status);
+    EXPECT_EQ(status.session_state, state);
+  }
+}
+
+TEST(WriteSession, KeepsTheSixteenNewestAcknowledgements) {
+  Session session(SessionDefaults{});
+  for (std::int64_t id = 1; id <= 40; ++id) {
+    session.on_request({.request_id = id, .action = Action::kDescribe});
+  }
+  status_t status{};
+  write_session(session, status);
+  EXPECT_EQ(status.num_acks, 16);
+  EXPECT_EQ(status.ack_request_id.size(), 16U);
+  EXPECT_EQ(status.ack_code.size(), 16U);
+  EXPECT_EQ(status.ack_text.size(), 16U);
+  EXPECT_EQ(status.ack_request_id.front(), 40);
+  EXPECT_EQ(status.ack_request_id.back(), 25);
+}
+
+status_t progress_status(const CalibrationProgress& progress, double elapsed_s) {
+  const StartOptions start{.wanted = {.rotation_deg = 0.3, .translation_mm = 1.5},
+                           .max_duration_s = 30};
+  status_t status{};
+  write_progress(progress, start, elapsed_s, status);
+  return status;
+}
+
+TEST(WriteProgress, WithoutAnEstimateIsThatOfTheClock) {
+  const status_t status = progress_status({.guidance = "tilt up and down"}, 6);
+  EXPECT_DOUBLE_EQ(status.progress, 0.2);
+  EXPECT_EQ(status.elapsed_s, 6);
+  EXPECT_EQ(status.sigma_rotation_deg, -1);
+  EXPECT_EQ(status.sigma_translation_mm, -1);
+  EXPECT_EQ(status.guidance, "tilt up and down");
+}
+
+TEST(WriteProgress, IsThatOfTheWorseSigma) {
+  // Rotation is there; translation is at twice what is wanted: a quarter of the time it takes.
+  const status_t status = progress_status({.keyframes = 12,
+                                           .rotation_coverage_deg = 33,
+                                           .translation_coverage_mm = 120,
+                                           .sigma_rotation_deg = 0.2,
+                                           .sigma_translation_mm = 3.0},
+                                          1);
+  EXPECT_DOUBLE_EQ(status.progress, 0.25);
+  EXPECT_EQ(status.sigma_rotation_deg, 0.2);
+  EXPECT_EQ(status.sigma_translation_mm, 3.0);
+  EXPECT_EQ(status.keyframes, 12);
+  EXPECT_EQ(status.rotation_coverage_deg, 33);
+  EXPECT_EQ(status.translation_coverage_mm, 120);
+}
+
+TEST(WriteProgress, StaysBetweenZeroAndOne) {
+  EXPECT_EQ(progress_status({}, 0).progress, 0);
+  EXPECT_EQ(progress_status({}, 31).progress, 1);
+  EXPECT_EQ(progress_status({.sigma_rotation_deg = 0.01, .sigma_translation_mm = 0.01}, 1).progress,
+            1);
+}
+
+}  // namespace
+}  // namespace handeye

@@ -67,6 +67,12 @@ std::string without_timings(const std::string& out) {
   return result.dump(2);
 }
 
+/// Path within the folder.
+std::string tenth_image(const std::filesystem::path& folder) {
+  const std::string row = lines_of(read_bytes(folder / "frames.csv")).at(10);
+  return row.substr(row.find(',') + 1);
+}
+
 void expect_one_line(const Finished& finished, const std::vector<std::string>& words) {
   EXPECT_EQ(finished.exit_code, 2);
   EXPECT_THAT(lines_of(finished.err), SizeIs(1)) << finished.err;
@@ -128,13 +134,21 @@ TEST_F(Replay, TrackerFileCutShort) {
 
 TEST_F(Replay, UnreadableImage) {
   const std::filesystem::path copy = damaged_folder();
-  const std::string table = read_bytes(copy / "frames.csv");
-  const std::string row = lines_of(table).at(10);
-  const std::string image = row.substr(row.find(',') + 1);
+  const std::string image = tenth_image(copy);
   write_bytes(copy / image, "no image");
   expect_one_line(replay(copy), {image});
   std::filesystem::remove(copy / image);
   expect_one_line(replay(copy), {image, "frames.csv"});
+}
+
+TEST_F(Replay, ImageCutShort) {
+  const std::filesystem::path copy = damaged_folder();
+  const std::string image = tenth_image(copy);
+  const std::string bytes = read_bytes(copy / image);
+  write_bytes(copy / image, bytes.substr(0, bytes.size() / 2));
+  expect_one_line(replay(copy), {image});
+  write_bytes(copy / image, "");
+  expect_one_line(replay(copy), {image});
 }
 
 TEST_F(Replay, IntrinsicsOfAnotherImageSize) {

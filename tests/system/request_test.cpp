@@ -156,6 +156,31 @@ TEST_F(RequestSystem, CtrlCCancels) {
   EXPECT_TRUE(reaches(status_t::CANCELLED));
 }
 
+TEST_F(RequestSystem, FinishSolvesFromWhatIsThereAndDescribeTellsItAgain) {
+  const request_t start = long_start(60);
+  ASSERT_TRUE(listener().ask(start));
+  ASSERT_TRUE(listener().spin_until(
+      [&] { return listener().statuses().back().frames_collected > 30; }, seconds(60)));
+  request_t finish = cancel_request(start.request_id);
+  finish.action = request_t::FINISH;
+  ASSERT_TRUE(listener().ask(finish));
+  EXPECT_EQ(listener().ack_code(finish.request_id), status_t::ACK_TAKEN);
+  ASSERT_TRUE(gets_result(start.request_id, seconds(60)));
+  const result_t result = *listener().result_of(start.request_id);
+  EXPECT_EQ(result.verdict, result_t::REFUSED) << "a sigma nobody reaches";
+  EXPECT_GT(result.frames_received, 30);
+  EXPECT_NE(result.reason, "");
+  EXPECT_NE(result.advice, "");
+
+  request_t describe = cancel_request();
+  describe.action = request_t::DESCRIBE;
+  ASSERT_TRUE(listener().ask(describe));
+  ASSERT_TRUE(listener().spin_until([&] { return listener().results().size() >= 2; }, kSoon));
+  const result_t& again = listener().results().back();
+  EXPECT_EQ(again.request_id, start.request_id);
+  EXPECT_THAT(again.t_mm, testing::ElementsAreArray(result.t_mm));
+}
+
 TEST_F(RequestSystem, WhatIsNoRequestIsRefusedInWords) {
   request_t nonsense = start_request(1);
   nonsense.action = 99;

@@ -63,19 +63,42 @@ bool scale_is_to_blame(const MaximumLikelihoodResult& result, const JudgeOptions
           known * known < (1.0 - kScaleShare) * sigma * sigma);
 }
 
-std::optional<double> chi2_between_halves(std::span<const HandEyeObservation> observations,
-                                          const HandEyeSolution& start,
-                                          const JudgeOptions& options) {
+struct HalvesComparison {
+  Vector6d difference;  ///< (w [rad], dt [mm]) from the second half's answer to the first's
+  double chi2{0};
+};
+
+std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
+                                               const HandEyeSolution& start,
+                                               const JudgeOptions& options) {
   const std::size_t half = observations.size() / 2;
   if (half < kMinHalf) return std::nullopt;
   const auto first = maximum_likelihood(observations.first(half), start, options.solver);
   const auto second = maximum_likelihood(observations.subspan(half), start, options.solver);
   if (!first || !second) return std::nullopt;
-  Vector6d difference;
-  difference << log_so3(first->solution.hand_from_eye.linear() *
-                        second->solution.hand_from_eye.linear().transpose()),
+  HalvesComparison comparison;
+  comparison.difference << log_so3(first->solution.hand_from_eye.linear() *
+                                   second->solution.hand_from_eye.linear().transpose()),
       first->solution.hand_from_eye.translation() - second->solution.hand_from_eye.translation();
-  return difference.dot((first->covariance + second->covariance).ldlt().solve(difference));
+  const Matrix6d covariance = first->covariance + second->covariance;
+  comparison.chi2 = comparison.difference.dot(covariance.ldlt().solve(comparison.difference));
+  return comparison;
+}
+
+/// What the answer is worth, and whether that is enough.
+bool suffices(std::span<const HandEyeObservation> observations,
+              const MaximumLikelihoodResult& result, const JudgeOptions& options,
+              Judgement& judgement) {
+  judgement.covariance = result.covariance;
+  const auto halves = compare_halves(observations, result.solution, options);
+  if (!halves) return false;
+  judgement.halves_chi2 = halves->chi2;
+  if (halves->chi2 > options.halves_chi2_by_chance) {
+    judgement.covariance += 0.25 * halves->difference * halves->difference.transpose();
+  }
+  return sigma_rotation_deg(judgement.covariance) <= options.wanted_rotation_deg &&
+         sigma_translation_mm(judgement.covariance) <= options.wanted_translation_mm &&
+         result.log_scale_sigma <= options.max_log_scale_sigma;
 }
 
 }  // namespace
@@ -83,19 +106,15 @@ std::optional<double> chi2_between_halves(std::span<const HandEyeObservation> ob
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   Judgement judgement;
-  if (result) {
-    judgement.halves_chi2 = chi2_between_halves(observations, result->solution, options);
-    const bool precise = result->sigma_rotation_deg() <= options.wanted_rotation_deg &&
-                         result->sigma_translation_mm() <= options.wanted_translation_mm &&
-                         result->log_scale_sigma <= options.max_log_scale_sigma;
-    const bool halves_agree =
-        judgement.halves_chi2 && *judgement.halves_chi2 <= options.max_halves_chi2;
-    if (precise && halves_agree) {
-      judgement.problem = MotionProblem::kNone;
-      return judgement;
-    }
-    if (precise) return judgement;  // uncertain
+  if (result && suffices(observations, *result, options, judgement)) {
+    judgement.problem = MotionProblem::kNone;
+    return judgement;
   }
+  const bool precise_by_itself = result &&
+                                 result->sigma_rotation_deg() <= options.wanted_rotation_deg &&
+                                 result->sigma_translation_mm() <= options.wanted_translation_mm &&
+                                 result->log_scale_sigma <= options.max_log_scale_sigma;
+  if (precise_by_itself) return judgement;  // the motion was enough: uncertain
 
   std::vector<Pose> hand;
   std::vector<Pose> eye;

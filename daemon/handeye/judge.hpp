@@ -20,11 +20,11 @@ enum class MotionProblem {
 };
 
 struct JudgeOptions {
-  double wanted_rotation_deg{0.3};    ///< square root of the trace of w's block
-  double wanted_translation_mm{1.5};  ///< likewise of dt's
-  double max_log_scale_sigma{0.1};    ///< beyond it the linearised covariance means nothing
-  double max_halves_chi2{27.9};       ///< of 6 dof: exceeded by chance once in 10 000
-  MaximumLikelihoodOptions solver;    ///< for the halves; as for the whole
+  double wanted_rotation_deg{0.3};     ///< square root of the trace of w's block
+  double wanted_translation_mm{1.5};   ///< likewise of dt's
+  double max_log_scale_sigma{0.1};     ///< beyond it the linearised covariance means nothing
+  double halves_chi2_by_chance{12.6};  ///< of 6 dof: exceeded once in 20; beyond it is a finding
+  MaximumLikelihoodOptions solver;     ///< for the halves; as for the whole
 };
 
 struct Judgement {
@@ -32,11 +32,15 @@ struct Judgement {
   /// Squared Mahalanobis distance between the answers of the first and the second half of the data
   /// (6 dof); nothing when a half is too short.
   std::optional<double> halves_chi2;
+  /// Of hand_from_eye as in MaximumLikelihoodResult, with what the halves add: where they differ by
+  /// d and chance does not explain it, d/2 is taken as one more error of the answer, for it is the
+  /// standard error of the mean of two. This, not the likelihood's, is what is accepted or refused.
+  Matrix6d covariance{Matrix6d::Zero()};
 };
 
-/// Accepts an answer whose sigmas are within what was wanted, whose scale is observable and whose
-/// disjoint halves agree within their sigmas; else names what the motion lacks. `result`: of the
-/// same observations; nothing when there is none.
+/// Accepts an answer whose sigmas, the disagreement of its disjoint halves included, are within
+/// what was wanted and whose scale is observable; else names what the motion lacks. `result`: of
+/// the same observations; nothing when there is none.
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result,
                 const JudgeOptions& options = {});

@@ -197,12 +197,20 @@ MaximumLikelihoodResult estimate_without_outliers(std::span<const HandEyeObserva
 
 }  // namespace
 
-double MaximumLikelihoodResult::sigma_rotation_deg() const {
+double sigma_rotation_deg(const Matrix6d& covariance) {
   return deg_from_rad(std::sqrt(covariance.topLeftCorner<3, 3>().trace()));
 }
 
-double MaximumLikelihoodResult::sigma_translation_mm() const {
+double sigma_translation_mm(const Matrix6d& covariance) {
   return std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+}
+
+double MaximumLikelihoodResult::sigma_rotation_deg() const {
+  return handeye::sigma_rotation_deg(covariance);
+}
+
+double MaximumLikelihoodResult::sigma_translation_mm() const {
+  return handeye::sigma_translation_mm(covariance);
 }
 
 std::optional<MaximumLikelihoodResult> maximum_likelihood(

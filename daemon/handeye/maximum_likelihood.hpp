@@ -29,6 +29,11 @@ struct MaximumLikelihoodOptions {
   int rounds{4};       ///< of solving and estimating the noise
 };
 
+/// Square roots of the traces of the rotation's and the translation's block of a covariance of
+/// (w [rad], dt [mm]): the figures that are wanted, reported and judged.
+double sigma_rotation_deg(const Matrix6d& covariance);
+double sigma_translation_mm(const Matrix6d& covariance);
+
 struct MaximumLikelihoodResult {
   HandEyeSolution solution;
   Pose room_from_scene{Pose::Identity()};  ///< scene in mm

@@ -57,6 +57,12 @@ std::vector<MethodResult> compare_methods(const Estimate& estimate) {
   return results;
 }
 
+void write_covariance(const Matrix6d& covariance, CalibrationResult& result) {
+  result.covariance = covariance;
+  result.sigma_rotation_deg = sigma_rotation_deg(covariance);
+  result.sigma_translation_mm = sigma_translation_mm(covariance);
+}
+
 void write_estimate(const Estimate& estimate, CalibrationResult& result) {
   result.methods = compare_methods(estimate);
   if (estimate.correlation) {
@@ -66,9 +72,7 @@ void write_estimate(const Estimate& estimate, CalibrationResult& result) {
   if (!estimate.likelihood) return;
   result.has_estimate = true;
   result.solution = estimate.likelihood->solution;
-  result.covariance = estimate.likelihood->covariance;
-  result.sigma_rotation_deg = estimate.likelihood->sigma_rotation_deg();
-  result.sigma_translation_mm = estimate.likelihood->sigma_translation_mm();
+  write_covariance(estimate.likelihood->covariance, result);
   result.residuals = result.methods.back().residuals;
 }
 
@@ -122,12 +126,14 @@ CalibrationResult Calibration::solve() {
   const Stopwatch stopwatch;
   const Estimate found = estimate(reconstruction.frames, hand_, options_.noise);
   write_estimate(found, result);
-  result.reason = reason_to_refuse({.frames_received = frames_,
+  const Finding finding = conclude({.frames_received = frames_,
                                     .hand_path = hand_path_.room_from_hand(),
                                     .reconstruction = reconstruction,
                                     .estimate = found,
                                     .noise = options_.noise,
                                     .wanted = options_.start.wanted});
+  if (found.likelihood && finding.judgement) write_covariance(finding.judgement->covariance, result);
+  result.reason = finding.reason;
   result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
   result.advice = reason_advice(result.reason);
   result.timings_ms.handeye = stopwatch.elapsed_ms();

@@ -20,7 +20,7 @@ struct Estimate {
   double time_offset_s{0};                ///< camera stamp = tracker stamp + this; refined
   double time_offset_sigma_s{0};
   std::optional<MaximumLikelihoodResult> likelihood;  ///< nothing: the data do not determine any
-  MaximumLikelihoodOptions options;  ///< it was solved with
+  MaximumLikelihoodOptions options;                   ///< it was solved with
   double time_ms{0};
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/verdict.hpp"
 
-#include "daemon/handeye/judge.hpp"
-
 namespace handeye {
 namespace {
 
@@ -13,13 +11,20 @@ constexpr double kSeenEnough = 0.5;
 
 Reason reason_of(MotionProblem problem) {
   switch (problem) {
-    case MotionProblem::kNone: return Reason::kNone;
-    case MotionProblem::kNoMotion: return Reason::kNoMotion;
-    case MotionProblem::kInsufficientRotation: return Reason::kInsufficientRotation;
-    case MotionProblem::kNoParallax: return Reason::kNoParallax;
-    case MotionProblem::kSingleAxis: return Reason::kSingleAxis;
-    case MotionProblem::kFixedPoint: return Reason::kFixedPoint;
-    case MotionProblem::kUncertain: break;
+    case MotionProblem::kNone:
+      return Reason::kNone;
+    case MotionProblem::kNoMotion:
+      return Reason::kNoMotion;
+    case MotionProblem::kInsufficientRotation:
+      return Reason::kInsufficientRotation;
+    case MotionProblem::kNoParallax:
+      return Reason::kNoParallax;
+    case MotionProblem::kSingleAxis:
+      return Reason::kSingleAxis;
+    case MotionProblem::kFixedPoint:
+      return Reason::kFixedPoint;
+    case MotionProblem::kUncertain:
+      break;
   }
   return Reason::kUncertain;
 }
@@ -33,35 +38,39 @@ Reason reason_without_reconstruction(const Evidence& evidence) {
   return no_parallax ? Reason::kNoParallax : Reason::kTooFewFeatures;
 }
 
-MotionProblem judged(const Evidence& evidence) {
+Judgement judged(const Evidence& evidence) {
   JudgeOptions options;
   options.wanted_rotation_deg = evidence.wanted.rotation_deg;
   options.wanted_translation_mm = evidence.wanted.translation_mm;
   options.solver = evidence.estimate.options;
-  return judge(evidence.estimate.observations, evidence.estimate.likelihood, options).problem;
+  return judge(evidence.estimate.observations, evidence.estimate.likelihood, options);
 }
 
-}  // namespace
-
-Reason reason_to_refuse(const Evidence& evidence) {
-  if (evidence.frames_received == 0) return Reason::kCameraLost;
-  if (evidence.hand_path.empty()) return Reason::kTrackerLost;
-  if (evidence.reconstruction.frames.size() < kFewestPoses) {
-    return reason_without_reconstruction(evidence);
-  }
-  const std::size_t seen = evidence.estimate.observations.size();
-  if (seen < kFewestPoses) return Reason::kTrackerLost;
-
-  const MotionProblem problem = judged(evidence);
+/// The judgement in the result's words; devices are blamed for what a motion cannot mend.
+Reason reason_after(MotionProblem problem, const Evidence& evidence) {
   if (problem != MotionProblem::kNone && problem != MotionProblem::kUncertain) {
     return reason_of(problem);
   }
   if (!evidence.estimate.correlation) return Reason::kClockUnstable;
+  const auto seen = static_cast<double>(evidence.estimate.observations.size());
   const auto registered = static_cast<double>(evidence.reconstruction.frames.size());
-  if (problem == MotionProblem::kUncertain && static_cast<double>(seen) < kSeenEnough * registered) {
+  if (problem == MotionProblem::kUncertain && seen < kSeenEnough * registered) {
     return Reason::kTrackerLost;
   }
   return reason_of(problem);
+}
+
+}  // namespace
+
+Finding conclude(const Evidence& evidence) {
+  if (evidence.frames_received == 0) return {Reason::kCameraLost, {}};
+  if (evidence.hand_path.empty()) return {Reason::kTrackerLost, {}};
+  if (evidence.reconstruction.frames.size() < kFewestPoses) {
+    return {reason_without_reconstruction(evidence), {}};
+  }
+  if (evidence.estimate.observations.size() < kFewestPoses) return {Reason::kTrackerLost, {}};
+  const Judgement judgement = judged(evidence);
+  return {reason_after(judgement.problem, evidence), judgement};
 }
 
 }  // namespace handeye

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "daemon/handeye/judge.hpp"
 #include "daemon/handeye/types.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "daemon/session/estimate.hpp"
@@ -21,8 +23,13 @@ struct Evidence {
   WantedSigma wanted;
 };
 
-/// The reason to refuse, first match: nothing was seen, the motion was not enough, the images were
-/// not, the answer is not certain enough. kNone: accept.
-Reason reason_to_refuse(const Evidence& evidence);
+struct Finding {
+  Reason reason{Reason::kNone};        ///< kNone: accept
+  std::optional<Judgement> judgement;  ///< nothing: there was no answer to judge
+};
+
+/// Judges, first match: nothing was seen, the motion was not enough, the images were not, the
+/// answer is not certain enough.
+Finding conclude(const Evidence& evidence);
 
 }  // namespace handeye

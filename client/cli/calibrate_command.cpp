@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
+#include <fmt/format.h>
 
 #include "client/cli/commands.hpp"
 #include "client/cli/interrupt.hpp"
@@ -93,10 +95,15 @@ ExitCode print_bare_verdict(std::string_view verdict, std::string_view reason,
   return ExitCode::kRefused;
 }
 
-ExitCode report(const CalibrationOutcome& outcome, const Client& client,
-                const CalibrateOptions& options) {
+ExitCode report(const CalibrationOutcome& outcome, std::chrono::duration<double> elapsed,
+                const Client& client, const CalibrateOptions& options) {
   if (outcome.result) {
-    return print_result(from_message(*outcome.result), options.output, options.save);
+    const ExitCode code =
+        print_result(from_message(*outcome.result), options.output, options.save);
+    if (!options.output.json) {
+      print_line(fmt::format("  {:.1f} s from request to result", elapsed.count()));
+    }
+    return code;
   }
   switch (outcome.kind) {
     case Kind::kRequestRefused:
@@ -121,12 +128,13 @@ ExitCode run_calibrate(CalibrateOptions options) {
   options.start.wanted_sigma_translation_mm = options.wanted.translation_mm;
   Interrupt interrupt;
   Client client(options.client);
+  const auto requested = std::chrono::steady_clock::now();
   const auto outcome = run_to_its_end(client, interrupt, options);
   if (!outcome) {
     print_error("stopped before the daemon confirmed the cancellation");
     return ExitCode::kRefused;
   }
-  return report(*outcome, client, options);
+  return report(*outcome, std::chrono::steady_clock::now() - requested, client, options);
 }
 
 }  // namespace

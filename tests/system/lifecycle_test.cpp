@@ -42,6 +42,22 @@ TEST_F(LifecycleSystem, SigtermEndsADaemonThatCollects) {
   EXPECT_EQ(finished->exit_code, 0) << finished->err;
 }
 
+TEST_F(LifecycleSystem, SigtermEndsADaemonThatSolves) {
+  Room room;
+  ASSERT_TRUE(room.start_simulator({.seed = 5}));
+  ASSERT_TRUE(room.start_daemon());
+  request_t start = start_request(6);
+  start.wanted_sigma_rotation_deg = 1e-3;
+  start.wanted_sigma_translation_mm = 1e-3;
+  ASSERT_TRUE(room.listener().ask(start));
+  ASSERT_TRUE(room.listener().spin_until(
+      [&] { return room.listener().session_state() != status_t::COLLECTING; }, seconds(60)));
+  // The solve is brought to its end first.
+  const auto finished = room.stop_daemon(kSoon);
+  ASSERT_TRUE(finished.has_value()) << "it still runs";
+  EXPECT_EQ(finished->exit_code, 0) << finished->err;
+}
+
 TEST_F(LifecycleSystem, DevicesMayComeLater) {
   const SimulatorSettings simulator{.seed = 3};
   Room room;

@@ -4,13 +4,13 @@
 #include <arpa/inet.h>
 #include <cerrno>
 #include <cstdlib>
+#include <ctime>
 #include <limits>
 #include <netinet/in.h>
 #include <optional>
 #include <poll.h>
 #include <random>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "protocol/exit_codes.hpp"

@@ -2,8 +2,8 @@
 #include "daemon/service/event_loop.hpp"
 
 #include <cstring>
+#include <ctime>
 #include <sys/epoll.h>
-#include <time.h>
 
 #include <fmt/format.h>
 

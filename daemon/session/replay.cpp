@@ -29,7 +29,7 @@ CameraModel camera_for(const Recording& recording, const ReplayOptions& options)
 
 cv::Mat mask_for(const Recording& recording, const ReplayOptions& options,
                  const CameraModel& camera) {
-  const cv::Mat mask = options.mask_file ? read_mask(*options.mask_file) : recording.mask;
+  cv::Mat mask = options.mask_file ? read_mask(*options.mask_file) : recording.mask;
   if (!mask.empty() && (mask.cols != camera.width || mask.rows != camera.height)) {
     throw InputError(fmt::format("{}: the mask is {}x{}, the camera file is for {}x{}",
                                  options.mask_file.value_or(options.recording).string(), mask.cols,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/system/process.hpp"
 
+#include <csignal>
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sstream>
 #include <stdexcept>
@@ -34,6 +34,7 @@ Process::Process(const std::vector<std::string>& words) {
   std::vector<std::string> all{"setpriv", "--pdeathsig", "KILL", "--"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> argv;
+  argv.reserve(all.size() + 1);
   for (std::string& word : all) argv.push_back(word.data());
   argv.push_back(nullptr);
 

@@ -41,13 +41,13 @@ class Replay : public testing::Test {
 
   /// A copy of the folder, to be damaged.
   std::filesystem::path damaged_folder() const {
-    const std::filesystem::path copy = own_ / "copy";
+    std::filesystem::path copy = own_ / "copy";
     std::filesystem::copy(folder(), copy, std::filesystem::copy_options::recursive);
     return copy;
   }
   /// The first part of the log, beside its camera file.
   std::filesystem::path shortened_log(std::size_t bytes) const {
-    const std::filesystem::path copy = own_ / "short.lcm";
+    std::filesystem::path copy = own_ / "short.lcm";
     write_bytes(copy, read_bytes(log()).substr(0, bytes));
     std::filesystem::copy_file(*recordings_ / "room.camera.json", own_ / "short.camera.json");
     return copy;

@@ -150,6 +150,7 @@ TEST(Bus, PublishersOfSeveralThreadsDoNotDisturbEachOther) {
     heard[static_cast<std::size_t>(request.action)].push_back(request.request_id);
   });
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   for (int thread = 0; thread < kThreads; ++thread) {
     threads.emplace_back([&bus, thread] {
       Publisher<request_t> publisher(bus, kChannel);

@@ -113,8 +113,8 @@ TEST_F(PosePublisherTest, WaitsForTheSampleAfterTheFrame) {
 
 TEST_F(PosePublisherTest, PublishesFramesInTheirOrderAndEachOnce) {
   publisher_.use(calibration_);
-  for (int i = 0; i < 5; ++i) add_frame(20 * i + 1);
-  for (int i = 0; i < 7; ++i) add_hand(16 * i);
+  for (std::int64_t i = 0; i < 5; ++i) add_frame(20 * i + 1);
+  for (std::int64_t i = 0; i < 7; ++i) add_hand(16 * i);
   publish(100);
   ASSERT_EQ(publish(110).size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -162,8 +162,8 @@ TEST_F(PosePublisherTest, TrackerThatWasNeverHeard) {
 
 TEST_F(PosePublisherTest, RecoversAfterAnOcclusion) {
   publisher_.use(calibration_);
-  for (int i = 0; i < 3; ++i) add_hand(16 * i, false);
-  for (int i = 3; i < 6; ++i) add_hand(16 * i);
+  for (std::int64_t i = 0; i < 3; ++i) add_hand(16 * i, false);
+  for (std::int64_t i = 3; i < 6; ++i) add_hand(16 * i);
   add_frame(20);
   add_frame(60);
   ASSERT_EQ(publish(100).size(), 2U);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "daemon/reconstruction/bundle_adjustment.hpp"
 #include "daemon/reconstruction/scene_points.hpp"
@@ -91,11 +92,16 @@ void Segment::adopt(Scene scene) {
   refresh_frames();
 }
 
-FrameRecord* Segment::find_frame(std::int64_t index) {
+const FrameRecord* Segment::find_frame(std::int64_t index) const {
   const auto found = std::lower_bound(
       frames_.begin(), frames_.end(), index,
       [](const FrameRecord& frame, std::int64_t wanted) { return frame.index < wanted; });
   return found != frames_.end() && found->index == index ? &*found : nullptr;
+}
+
+FrameRecord* Segment::find_frame(std::int64_t index) {
+  const FrameRecord* found = std::as_const(*this).find_frame(index);
+  return found != nullptr ? &frames_[static_cast<std::size_t>(found - frames_.data())] : nullptr;
 }
 
 /// Constant velocity, by the index of the frames, from the last two that are registered.
@@ -129,7 +135,7 @@ bool Segment::register_frame(FrameRecord& frame, const Pose& predicted) {
 bool Segment::wants_keyframe(const FrameRecord& frame) const {
   if (frame.inliers < kKeyframeInlierRatio * keyframe_inliers_) return true;
   const Keyframe& last = scene_.keyframes.back();
-  const auto* before = const_cast<Segment*>(this)->find_frame(last.frame_index);
+  const FrameRecord* before = find_frame(last.frame_index);
   return median_movement_px(camera_, common_features(*before, frame)) >=
          options_.keyframe_parallax_px;
 }

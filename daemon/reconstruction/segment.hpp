@@ -48,6 +48,7 @@ class Segment {
   void adjust_window();
   void adjust_all();
   void refresh_frames();
+  const FrameRecord* find_frame(std::int64_t index) const;
   FrameRecord* find_frame(std::int64_t index);
 
   const CameraModel& camera_;

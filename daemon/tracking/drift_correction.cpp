@@ -13,14 +13,14 @@ namespace {
 constexpr int kLevels = 1;              ///< of the pyramid: the start is near
 constexpr std::size_t kFewest = 12;     ///< features that determine a homography well
 constexpr double kMaxCorrectionPx = 3;  ///< a feature farther off than that has slid away
-constexpr double kOrphanShare = 0.2;    ///< features without reference that are worth a new one
+constexpr double kOrphanShare = 0.1;    ///< features without reference that are worth a new one
 
 }  // namespace
 
 void DriftCorrection::correct(const std::vector<cv::Mat>& pyramid, double max_miss_px,
                               std::vector<Feature>& features) {
-  const int reference = next_to_correct_;
-  next_to_correct_ = (next_to_correct_ + 1) % kReferences;
+  const int reference = next_in_use(features);
+  if (reference == Feature::kNoReference) return;
   members_.clear();
   from_.clear();
   to_.clear();
@@ -44,6 +44,20 @@ void DriftCorrection::correct(const std::vector<cv::Mat>& pyramid, double max_mi
     feature.lost = cv::norm(to_[k] - feature.pixel) > kMaxCorrectionPx;
     feature.pixel = to_[k];
   }
+}
+
+/// The reference whose turn it is, among those that features refer to.
+int DriftCorrection::next_in_use(const std::vector<Feature>& features) {
+  for (int step = 1; step <= kReferences; ++step) {
+    const int reference = (last_corrected_ + step) % kReferences;
+    const bool in_use = std::any_of(features.begin(), features.end(), [&](const Feature& feature) {
+      return feature.reference == reference;
+    });
+    if (!in_use) continue;
+    last_corrected_ = reference;
+    return reference;
+  }
+  return Feature::kNoReference;
 }
 
 bool DriftCorrection::warp(const cv::Mat& reference) {

@@ -20,9 +20,9 @@ class DriftCorrection {
  public:
   explicit DriftCorrection(RoundTripFlow& flow) : flow_(flow) {}
 
-  /// Corrects the features that refer to one of the earlier images; each call takes the next image,
-  /// so that a frame pays for one warp. Marks as lost those that have slid away; those that look
-  /// different by now lose their reference. `pyramid` is of the present image.
+  /// Corrects the features that refer to one of the earlier images; each call takes the next image
+  /// in use, so that a frame pays for one warp. Marks as lost those that have slid away; those that
+  /// look different by now lose their reference. `pyramid` is of the present image.
   void correct(const std::vector<cv::Mat>& pyramid, double max_miss_px,
                std::vector<Feature>& features);
 
@@ -30,13 +30,14 @@ class DriftCorrection {
   void renew(const cv::Mat& image, std::vector<Feature>& features);
 
  private:
-  static constexpr int kReferences = 4;
+  static constexpr int kReferences = 3;
 
+  int next_in_use(const std::vector<Feature>& features);
   bool warp(const cv::Mat& reference);
 
   RoundTripFlow& flow_;
   std::array<cv::Mat, kReferences> references_;
-  int next_to_correct_{0};
+  int last_corrected_{kReferences - 1};
   int next_to_replace_{0};
   // Scratch.
   cv::Mat warped_;

@@ -20,8 +20,8 @@ constexpr int kDarkFloor = 10;  ///< grey; black level and noise of real cameras
 constexpr int kCornerFraction = 12;      ///< corners looked at: this fraction of the width
 constexpr double kCornerDark = 0.9;      ///< share of a corner that must be dark
 constexpr double kCloseFraction = 0.06;  ///< of the width: shadows at the rim this wide are bridged
-constexpr double kErodeFraction =
-    0.015;  ///< of the width: the rim's glow, and what the working size blurs
+/// Of the disc's radius: the rim's glow grows with the disc.
+constexpr double kErodeFraction = 0.05;
 constexpr double kMinArea = 0.08;  ///< of the image
 constexpr double kMinRoundness =
     0.6;  ///< area over that of the enclosing circle (a disc cut by the frame)
@@ -105,7 +105,8 @@ cv::Mat find_field_of_view(const cv::Mat& grey) {
   cv::Mat disc = cv::Mat::zeros(bright.size(), CV_8UC1);
   cv::drawContours(disc, std::vector<std::vector<cv::Point>>{outline}, 0, 255, cv::FILLED);
   disc = disc(cv::Rect({close, close}, small.size())).clone();
-  const int erode = std::max(2, cvRound(kErodeFraction * small.cols));
+  const double radius_px = std::sqrt(cv::contourArea(outline) / CV_PI);
+  const int erode = std::max(2, cvRound(kErodeFraction * radius_px));
   cv::erode(disc, disc, ellipse(erode));
   cv::Mat mask;
   cv::resize(disc, mask, grey.size(), 0, 0, cv::INTER_LINEAR);

@@ -15,20 +15,20 @@ namespace handeye::test {
 struct SyntheticOptions {
   int frames{200};
   double rate_hz{25};
-  double noise_px{0.4};              ///< per axis
-  double outlier_tracks{0.05};       ///< share of the features that slide off on their own
-  double death_rate{0.01};           ///< features lost per frame
-  double relief_mm{8};               ///< half the depth of the surface's waves; 0: a plane
+  double noise_px{0.4};         ///< per axis
+  double outlier_tracks{0.05};  ///< share of the features that slide off on their own
+  double death_rate{0.01};      ///< features lost per frame
+  double relief_mm{8};          ///< half the depth of the surface's waves; 0: a plane
   int max_features{250};
-  int blind_frame{-1};               ///< all tracks are lost before this frame
+  int blind_frame{-1};  ///< all tracks are lost before this frame
   unsigned seed{1};
 };
 
 /// room_from_eye at a time [s].
 using Motion = std::function<Pose(double)>;
 
-/// Free-hand: turns by up to about 20 degrees, moves by up to 15 mm an axis, around a view of the surface
-/// from 80 mm.
+/// Free-hand: turns by up to about 20 degrees, moves by up to 15 mm an axis, around a view of the
+/// surface from 80 mm.
 Motion free_hand();
 
 /// The same turns about the camera's centre, which stays where it is.
@@ -37,7 +37,7 @@ Motion turning_only();
 struct SyntheticTracks {
   CameraModel camera;
   std::vector<TrackedFrame> frames;
-  std::vector<Pose> eye_from_room;   ///< the truth, a frame each
+  std::vector<Pose> eye_from_room;  ///< the truth, a frame each
 };
 
 SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion);
@@ -46,8 +46,8 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
 struct AlignmentError {
   double rotation_rms_deg{0};
   double rotation_max_deg{0};
-  double centre_rms{0};     ///< camera centres, in units of the truth
-  double extent{0};         ///< rms distance of the true centres from their mean
+  double centre_rms{0};  ///< camera centres, in units of the truth
+  double extent{0};      ///< rms distance of the true centres from their mean
 };
 
 /// `truth` is indexed by RegisteredFrame::index.

@@ -14,7 +14,11 @@ namespace {
 constexpr std::size_t kMinIntervals = 20;
 constexpr double kMinOverlap = 0.5;  // share of the intervals that the hand must cover at an offset
 constexpr double kLobeDepth = 0.05;  // a second peak lies beyond a valley this deep
-constexpr std::size_t kPeakReach = 3;  // grid points on either side that the peak is fitted to
+// Grid points on either side that the peak is fitted to: until it has fallen well below the noise
+// of the curve, for a slow motion's peak is broad.
+constexpr std::size_t kLeastPeakReach = 3;
+constexpr std::size_t kMostPeakReach = 20;
+constexpr double kPeakDrop = 0.005;
 
 /// The eye's mean angular speed between two of its samples.
 struct Interval {
@@ -24,9 +28,11 @@ struct Interval {
   double speed_rad_s{0};
 };
 
-/// Hand and eye speeds at one offset.
+/// Hand and eye speeds at one offset. They are to be equal, not merely alike, so the coefficient is
+/// 1 - mean((e - h)^2) / (2 var(e)) with one variance for all offsets: a trend in the speed, which
+/// correlates with its own shifts, does not hide the offset.
 struct Correlation {
-  double coefficient{-1};  ///< -1 also when too few intervals are covered
+  double coefficient{-1};  ///< 1: equal; not bounded below; -1 also when too few are covered
   double eye_rms{0};
   double hand_rms{0};
 };
@@ -53,14 +59,24 @@ std::vector<Interval> intervals_of(std::span<const EyeSample> eye,
   return intervals;
 }
 
+double variance_of_speeds(std::span<const Interval> intervals) {
+  double sum = 0, sum_of_squares = 0;
+  for (const Interval& interval : intervals) {
+    sum += interval.speed_rad_s;
+    sum_of_squares += interval.speed_rad_s * interval.speed_rad_s;
+  }
+  const auto n = static_cast<double>(intervals.size());
+  return sum_of_squares / n - sum / n * sum / n;
+}
+
 Correlation correlate_at(const PoseBuffer& hand, std::span<const EyeSample> eye,
-                         std::span<const Interval> intervals, double offset_s,
-                         std::vector<HandLookup>& hand_at_eye) {
+                         std::span<const Interval> intervals, double speed_variance,
+                         double offset_s, std::vector<HandLookup>& hand_at_eye) {
   const std::int64_t offset_ns = std::llround(offset_s * 1e9);
   for (std::size_t i = 0; i < eye.size(); ++i) {
     hand_at_eye[i] = hand.lookup(eye[i].timestamp_ns - offset_ns);
   }
-  double n = 0, sum_e = 0, sum_h = 0, sum_ee = 0, sum_hh = 0, sum_eh = 0;
+  double n = 0, sum_ee = 0, sum_hh = 0, sum_difference2 = 0;
   for (const Interval& interval : intervals) {
     const HandLookup& a = hand_at_eye[interval.from];
     const HandLookup& b = hand_at_eye[interval.to];
@@ -69,11 +85,9 @@ Correlation correlate_at(const PoseBuffer& hand, std::span<const EyeSample> eye,
     const double h = rotation_angle_rad(a.room_from_hand.linear(), b.room_from_hand.linear()) /
                      interval.duration_s;
     n += 1;
-    sum_e += e;
-    sum_h += h;
     sum_ee += e * e;
     sum_hh += h * h;
-    sum_eh += e * h;
+    sum_difference2 += (e - h) * (e - h);
   }
   Correlation result;
   const double needed = std::max(static_cast<double>(kMinIntervals),
@@ -81,8 +95,7 @@ Correlation correlate_at(const PoseBuffer& hand, std::span<const EyeSample> eye,
   if (n < needed) return result;
   result.eye_rms = std::sqrt(sum_ee / n);
   result.hand_rms = std::sqrt(sum_hh / n);
-  const double variances = (sum_ee - sum_e * sum_e / n) * (sum_hh - sum_h * sum_h / n);
-  if (variances > 0) result.coefficient = (sum_eh - sum_e * sum_h / n) / std::sqrt(variances);
+  if (speed_variance > 0) result.coefficient = 1.0 - sum_difference2 / n / (2.0 * speed_variance);
   return result;
 }
 
@@ -92,21 +105,33 @@ struct Peak {
   double curvature{0};  ///< second derivative per grid step squared, negative
 };
 
+std::size_t peak_reach(const std::vector<Correlation>& curve, std::size_t top) {
+  const std::size_t room = std::min(top, curve.size() - 1 - top);
+  const double fallen = curve[top].coefficient - kPeakDrop;
+  std::size_t reach = kLeastPeakReach;
+  while (reach < std::min(room, kMostPeakReach) &&
+         std::max(curve[top - reach].coefficient, curve[top + reach].coefficient) > fallen) {
+    ++reach;
+  }
+  return reach;
+}
+
 /// Least-squares parabola through the grid points around the highest.
 std::optional<Peak> refine_peak(const std::vector<Correlation>& curve, std::size_t top) {
-  if (top < kPeakReach || top + kPeakReach >= curve.size()) return std::nullopt;
-  constexpr auto kPoints = static_cast<Eigen::Index>(2 * kPeakReach + 1);
-  Eigen::Matrix<double, kPoints, 3> powers;
-  Eigen::Matrix<double, kPoints, 1> heights;
-  for (Eigen::Index i = 0; i < kPoints; ++i) {
-    const double x = static_cast<double>(i) - static_cast<double>(kPeakReach);
+  if (top < kLeastPeakReach || top + kLeastPeakReach >= curve.size()) return std::nullopt;
+  const auto reach = static_cast<Eigen::Index>(peak_reach(curve, top));
+  Eigen::MatrixX3d powers(2 * reach + 1, 3);
+  Eigen::VectorXd heights(2 * reach + 1);
+  for (Eigen::Index i = 0; i < heights.size(); ++i) {
+    const auto x = static_cast<double>(i - reach);
     powers.row(i) << 1, x, x * x;
-    heights[i] = curve[top - kPeakReach + static_cast<std::size_t>(i)].coefficient;
+    heights[i] =
+        curve[top + static_cast<std::size_t>(i) - static_cast<std::size_t>(reach)].coefficient;
   }
   const Eigen::Vector3d c = powers.colPivHouseholderQr().solve(heights);
   if (!(c[2] < 0)) return std::nullopt;
   const double x = -0.5 * c[1] / c[2];
-  if (std::abs(x) > static_cast<double>(kPeakReach)) return std::nullopt;
+  if (std::abs(x) > static_cast<double>(reach)) return std::nullopt;
   return Peak{static_cast<double>(top) + x, c[0] + 0.5 * c[1] * x, 2.0 * c[2]};
 }
 
@@ -136,12 +161,14 @@ std::optional<TimeOffset> correlate_angular_speed(const PoseBuffer& hand,
   const std::vector<Interval> intervals = intervals_of(eye, options);
   if (intervals.size() < kMinIntervals || hand.size() < 2) return std::nullopt;
 
+  const double speed_variance = variance_of_speeds(intervals);
   const auto reach = static_cast<int>(std::lround(options.search_s / options.grid_s));
   std::vector<Correlation> curve;
   curve.reserve(static_cast<std::size_t>(2 * reach + 1));
   std::vector<HandLookup> hand_at_eye(eye.size());
   for (int step = -reach; step <= reach; ++step) {
-    curve.push_back(correlate_at(hand, eye, intervals, step * options.grid_s, hand_at_eye));
+    curve.push_back(
+        correlate_at(hand, eye, intervals, speed_variance, step * options.grid_s, hand_at_eye));
   }
 
   const auto highest = std::max_element(

@@ -22,14 +22,14 @@ struct TimeOffsetOptions {
   double interval_s{0.2};      ///< shortest time over which a speed is taken; evens out noise
   double max_interval_s{0.5};  ///< longer pauses of the camera are left out
   double min_angular_speed_rad_s{0.05};  ///< rms; below it there is nothing to correlate
-  double min_peak{0.7};                  ///< correlation coefficient at the peak
+  double min_peak{0.7};                  ///< agreement at the peak, 1: the speeds are equal
   double ambiguity{0.98};                ///< second peak / first peak at or above it: ambiguous
 };
 
 struct TimeOffset {
   double time_offset_s{0};  ///< add to a tracker time stamp to get the camera's of the same instant
   double sigma_s{0};
-  double peak{0};         ///< correlation coefficient at the peak
+  double peak{0};         ///< agreement there: 1 - mean((e - h)^2) / (2 var(e)) of the speeds
   double second_peak{0};  ///< of the next local maximum; near `peak`: periodic motion
 };
 

@@ -91,6 +91,22 @@ TEST(TimeOffset, IsUnbiasedAndHonestUnderNoise) {
   EXPECT_GT(normalised / kSeeds, 0.05);
 }
 
+/// A turn that only quickens slowly correlates well with its own shifts, over half of them as well
+/// as over all, and its peak is broad.
+TEST(TimeOffset, IsFoundWhereTheSpeedHasATrend) {
+  const auto quickening = [](double t) {
+    const double angle = 0.25 * t + 0.02 * t * t + 0.05 * std::sin(1.5 * t);
+    return exp_so3({0.3 * std::sin(angle), 0.9 * std::sin(0.7 * angle), angle});
+  };
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    const Streams streams =
+        simulate(quickening, 0.032, rad_from_deg(0.06), rad_from_deg(0.03), seed, 12);
+    const auto found = correlate_angular_speed(streams.hand, streams.eye);
+    ASSERT_TRUE(found) << seed;
+    EXPECT_NEAR(found->time_offset_s, 0.032, 0.010) << seed;
+  }
+}
+
 TEST(TimeOffset, NeedsRotation) {
   const auto still = [](double) { return Eigen::Matrix3d(Eigen::Matrix3d::Identity()); };
   const Streams streams = simulate(still, 0.01, rad_from_deg(0.06), rad_from_deg(0.03), 2);

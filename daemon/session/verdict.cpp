@@ -48,9 +48,11 @@ Judgement judged(const Evidence& evidence) {
 
 /// The judgement in the result's words; devices are blamed for what a motion cannot mend.
 Reason reason_after(MotionProblem problem, const Evidence& evidence) {
-  if (problem != MotionProblem::kNone && problem != MotionProblem::kUncertain) {
-    return reason_of(problem);
-  }
+  const bool names_the_motion =
+      problem == MotionProblem::kNoMotion || problem == MotionProblem::kInsufficientRotation ||
+      problem == MotionProblem::kNoParallax || problem == MotionProblem::kSingleAxis;
+  if (names_the_motion) return reason_of(problem);
+  // At a wrong offset the rest of the judgement means nothing.
   if (!evidence.estimate.correlation) return Reason::kClockUnstable;
   const auto seen = static_cast<double>(evidence.estimate.observations.size());
   const auto registered = static_cast<double>(evidence.reconstruction.frames.size());

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/calibration.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "daemon/session/guidance.hpp"
+#include "daemon/session/result_json.hpp"
+
+namespace handeye {
+namespace {
+
+constexpr double kFrameRate_hz = 25;
+constexpr double kTrackerRate_hz = 60;
+constexpr double kTimeOffset_s = 0.023;  // camera stamp minus tracker stamp of the same instant
+constexpr std::int64_t kStart_ns = 1'000'000'000'000;
+
+const CameraModel kCamera{640, 480, 600, 600, 320, 240, {-0.1, 0.01, 0, 0, 0}};
+
+Pose true_hand_from_eye() {
+  return make_pose(Eigen::Quaterniond(0.6, -0.3, 0.7, 0.2), {40, -60, 290});
+}
+
+/// The eye 80 mm above a bumpy surface: turns about three axes, shifts along three, not
+/// periodically.
+Pose room_from_eye(double t) {
+  const Eigen::Vector3d w(0.30 * std::sin(1.3 * t) + 0.05 * std::sin(3.1 * t),
+                          0.28 * std::sin(1.7 * t + 1) + 0.04 * std::sin(4.3 * t),
+                          0.25 * std::sin(0.9 * t + 2));
+  const Eigen::Matrix3d tilt = exp_so3(w);
+  Pose pose = Pose::Identity();
+  pose.linear() = tilt;
+  // Looks at the scene's middle from wherever it is, plus shifts of its own.
+  const Eigen::Vector3d shift(12 * std::sin(1.1 * t), 12 * std::sin(1.9 * t + 0.5),
+                              10 * std::sin(0.7 * t + 1));
+  pose.translation() = tilt * Eigen::Vector3d(0, 0, -80) + shift;
+  return pose;
+}
+
+struct Scene {
+  std::vector<Eigen::Vector3d> points_room;
+  std::mt19937 random{7};
+
+  Scene() {
+    std::uniform_real_distribution<double> side(-60, 60);
+    std::uniform_real_distribution<double> depth(-10, 10);
+    for (int i = 0; i < 500; ++i)
+      points_room.emplace_back(side(random), side(random), depth(random));
+  }
+
+  TrackedFrame frame(std::int64_t index) {
+    const double t = static_cast<double>(index) / kFrameRate_hz;
+    std::normal_distribution<double> noise_px(0, 0.2);
+    TrackedFrame tracked;
+    tracked.index = index;
+    tracked.timestamp_ns = kStart_ns + static_cast<std::int64_t>(1e9 * (t + kTimeOffset_s));
+    const Pose eye_from_room = room_from_eye(t).inverse();
+    for (std::size_t i = 0; i < points_room.size(); ++i) {
+      const Eigen::Vector3d point_eye = eye_from_room * points_room[i];
+      if (point_eye.z() < 10) continue;
+      const Eigen::Vector2d pixel = project<double>(kCamera, point_eye);
+      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > 639 || pixel.y() > 479) continue;
+      tracked.observations.push_back({static_cast<std::int64_t>(i),
+                                      pixel + Eigen::Vector2d(noise_px(random), noise_px(random))});
+    }
+    return tracked;
+  }
+
+  HandSample hand(std::int64_t index) {
+    const double t = static_cast<double>(index) / kTrackerRate_hz;
+    std::normal_distribution<double> noise(0, 1);
+    const auto noise3 = [&] {
+      return Eigen::Vector3d(noise(random), noise(random), noise(random));
+    };
+    HandSample sample;
+    sample.timestamp_ns = kStart_ns + static_cast<std::int64_t>(1e9 * t);
+    sample.tracked = true;
+    sample.room_from_hand = room_from_eye(t) * true_hand_from_eye().inverse();
+    sample.room_from_hand.linear() =
+        sample.room_from_hand.linear() * exp_so3(rad_from_deg(0.06) * noise3());
+    sample.room_from_hand.translation() += 0.15 * noise3();
+    return sample;
+  }
+};
+
+CalibrationOptions options() {
+  CalibrationOptions options;
+  options.start.request_id = 42;
+  options.camera = kCamera;
+  options.noise.hand_rotation_rad = rad_from_deg(0.06);
+  return options;
+}
+
+CalibrationResult calibrate(double duration_s, bool with_hand = true, bool with_frames = true) {
+  Scene scene;
+  Calibration calibration(options());
+  for (int k = 0; with_hand && k < duration_s * kTrackerRate_hz; ++k) {
+    calibration.add_hand(scene.hand(k));
+  }
+  for (int k = 0; with_frames && k < duration_s * kFrameRate_hz; ++k) {
+    calibration.add_frame(scene.frame(k));
+  }
+  return calibration.solve();
+}
+
+TEST(Calibration, FindsTransformationAndTimeOffset) {
+  const CalibrationResult result = calibrate(12);
+  EXPECT_EQ(result.verdict, Verdict::kAccepted) << reason_word(result.reason);
+  const Pose& found = result.solution.hand_from_eye;
+  const Pose truth = true_hand_from_eye();
+  EXPECT_LT(deg_from_rad(rotation_angle_rad(found.linear(), truth.linear())), 0.1);
+  EXPECT_LT((found.translation() - truth.translation()).norm(), 0.7);
+  ASSERT_TRUE(result.time_offset_s);
+  EXPECT_NEAR(*result.time_offset_s, kTimeOffset_s, 0.001);
+  EXPECT_EQ(result.request_id, 42);
+  EXPECT_EQ(result.frames.used, result.frames.received);
+  ASSERT_EQ(result.methods.size(), 3U);
+  EXPECT_EQ(result.methods.back().name, "maximum_likelihood");
+  for (const MethodResult& method : result.methods) EXPECT_TRUE(method.solution) << method.name;
+}
+
+TEST(Calibration, GivesTheSameAnswerTwice) {
+  auto first = to_json(calibrate(6));
+  auto second = to_json(calibrate(6));
+  for (auto* json : {&first, &second}) {
+    json->erase("timings_ms");
+    for (auto& method : (*json)["methods"]) method.erase("time_ms");
+  }
+  EXPECT_EQ(first.dump(), second.dump());
+}
+
+TEST(Calibration, SaysWhichDeviceWasSilent) {
+  EXPECT_EQ(calibrate(3, true, false).reason, Reason::kCameraLost);
+  const CalibrationResult result = calibrate(3, false, true);
+  EXPECT_EQ(result.reason, Reason::kTrackerLost);
+  EXPECT_EQ(result.verdict, Verdict::kRefused);
+  EXPECT_FALSE(result.has_estimate);
+  EXPECT_GT(result.frames.used, 60) << "what was reconstructed is told all the same";
+  EXPECT_EQ(calibrate(3, false, false).reason, Reason::kCameraLost);
+}
+
+TEST(Calibration, ProgressTellsSigmaAndGuidesTheHand) {
+  Scene scene;
+  Calibration calibration(options());
+  EXPECT_EQ(calibration.progress().guidance, "no image from the camera yet");
+  for (int k = 0; k < 8 * kTrackerRate_hz; ++k) calibration.add_hand(scene.hand(k));
+  for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
+  const CalibrationProgress progress = calibration.progress();
+  ASSERT_TRUE(progress.sigma_rotation_deg);
+  EXPECT_GT(*progress.sigma_rotation_deg, 0);
+  EXPECT_GT(progress.keyframes, 5);
+  EXPECT_GT(progress.rotation_coverage_deg, 15);
+  EXPECT_EQ(progress.guidance, "");
+}
+
+TEST(Guidance, NamesTheFirstThingThatIsMissing) {
+  Situation situation;
+  EXPECT_EQ(guidance_for(situation), "no image from the camera yet");
+  situation.any_frame = true;
+  situation.hand_hidden = true;
+  EXPECT_NE(guidance_for(situation).find("hidden"), std::string::npos);
+  situation.hand_hidden = false;
+  EXPECT_NE(guidance_for(situation).find("light"), std::string::npos);
+  situation.features_recent = 200;
+  EXPECT_EQ(guidance_for(situation), "tilt the scope up and down");
+  situation.rotation_coverage_deg = 30;
+  EXPECT_EQ(guidance_for(situation), "tilt the scope left and right");
+  situation.second_axis_deg = 8;
+  EXPECT_NE(guidance_for(situation).find("slide"), std::string::npos);
+  situation.translation_coverage_mm = 30;
+  situation.state = ReconstructionState::kTracking;
+  EXPECT_EQ(guidance_for(situation), "");
+}
+
+}  // namespace
+}  // namespace handeye

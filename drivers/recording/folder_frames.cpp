@@ -91,7 +91,8 @@ void FolderFrames::read_image(const std::filesystem::path& path, cv::Mat& grey) 
   if (looks_like_jpeg(bytes_)) {
     whole = jpeg_.decode(bytes_, std::nullopt, grey);
   } else if (!bytes_.empty()) {
-    cv::imdecode(bytes_, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION, &grey);
+    // Not into `grey`: what cannot be decoded would leave the image before in it.
+    grey = cv::imdecode(bytes_, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     whole = !grey.empty();
   }
   if (!whole) {

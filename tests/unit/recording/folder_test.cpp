@@ -94,6 +94,12 @@ TEST_F(FolderTest, RefusesImagesThatAreNone) {
   expect_input_error([&] { open_recording(path_); }, {"frames/000000.jpg", "no image"});
 }
 
+/// The image before must not be handed out once more in its place.
+TEST_F(FolderTest, RefusesALaterImageThatIsNone) {
+  write_bytes(path_ / "frames/000002.jpg", "this is no image");
+  expect_refused({"frames/000002.jpg", "no image"});
+}
+
 TEST_F(FolderTest, RefusesChangingSizes) {
   cv::imwrite(path_ / "frames/000001.jpg", cv::Mat(32, 32, CV_8UC1, cv::Scalar(9)));
   expect_refused({"frames/000001.jpg", "32x32", "64x48"});

@@ -10,9 +10,11 @@
 #include <optional>
 #include <poll.h>
 #include <random>
+#include <string_view>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "protocol/channels.hpp"
 #include "protocol/exit_codes.hpp"
 
 namespace handeye {
@@ -49,6 +51,15 @@ std::optional<sockaddr_in> multicast_group(const std::string& url) {
   return address;
 }
 
+/// LCM itself would print a line of its own about a scheme it does not know.
+void require_known_scheme(const std::string& url) {
+  for (const std::string_view scheme : {"udpm://", "memq://", "tcpq://", "file://"}) {
+    if (url.starts_with(scheme)) return;
+  }
+  throw InputError("LCM provider '" + url + "': must begin with udpm://, for example " +
+                   std::string(kDefaultLcmProvider));
+}
+
 /// LCM itself would print a screenful, part of it garbage; so ask the kernel first.
 void require_multicast_route(const sockaddr_in& group) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -80,6 +91,7 @@ std::int64_t random_id() {
 }
 
 Bus::Bus(const std::string& provider_url) : session_id_(random_id()) {
+  require_known_scheme(provider_url);
   if (const auto group = multicast_group(provider_url)) require_multicast_route(*group);
   lcm_ = std::make_unique<lcm::LCM>(provider_url);
   if (!lcm_->good()) {

@@ -65,7 +65,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    if (error.get_exit_code() == 0) return app.exit(error);  // help, version
+    fmt::print(stderr, "handeyed: {} (see 'handeyed --help')\n", error.what());
+    return static_cast<int>(ExitCode::kUsage);
   }
   try {
     return run(command_line);

@@ -98,8 +98,7 @@ ExitCode print_bare_verdict(std::string_view verdict, std::string_view reason,
 ExitCode report(const CalibrationOutcome& outcome, std::chrono::duration<double> elapsed,
                 const Client& client, const CalibrateOptions& options) {
   if (outcome.result) {
-    const ExitCode code =
-        print_result(from_message(*outcome.result), options.output, options.save);
+    const ExitCode code = print_result(from_message(*outcome.result), options.output, options.save);
     if (!options.output.json) {
       print_line(fmt::format("  {:.1f} s from request to result", elapsed.count()));
     }

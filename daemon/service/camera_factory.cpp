@@ -28,8 +28,10 @@ std::unique_ptr<Camera> make_v4l2_camera(const Config::Camera& config, const Cam
 
 std::unique_ptr<Camera> make_camera(const Config& config, const CameraModel& model) {
   switch (config.camera.driver) {
-    case Config::Camera::Driver::kLcm: return make_lcm_camera(config);
-    case Config::Camera::Driver::kV4l2: break;
+    case Config::Camera::Driver::kLcm:
+      return make_lcm_camera(config);
+    case Config::Camera::Driver::kV4l2:
+      break;
   }
   return make_v4l2_camera(config.camera, model);
 }

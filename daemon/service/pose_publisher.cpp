@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/pose_publisher.hpp"
 
+#include "daemon/session/pose_message.hpp"
+
 namespace handeye {
 namespace {
 
@@ -23,15 +25,6 @@ std::int32_t validity_of(LookupStatus status) {
       break;
   }
   return camera_pose_t::TRACKER_SILENT;
-}
-
-void write_pose(const Pose& pose, camera_pose_t& message) {
-  const Eigen::Quaterniond q(pose.linear());
-  message.q_wxyz[0] = q.w();
-  message.q_wxyz[1] = q.x();
-  message.q_wxyz[2] = q.y();
-  message.q_wxyz[3] = q.z();
-  for (int axis = 0; axis < 3; ++axis) message.t_mm[axis] = pose.translation()(axis);
 }
 
 }  // namespace
@@ -84,7 +77,7 @@ bool PosePublisher::publish_one(const FrameStamp& stamp, std::int64_t now_ns) {
   message_.calibration_request_id = calibration_->request_id;
   message_.calibration_age_s = (now_ns - calibration_->accepted_ns) / 1'000'000'000;
   if (hand.status == LookupStatus::kOk) {
-    write_pose(hand.room_from_hand * calibration_->hand_from_eye, message_);
+    write_pose(hand.room_from_hand * calibration_->hand_from_eye, message_.q_wxyz, message_.t_mm);
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(message_.covariance);
     covariance = camera_pose_covariance(hand.room_from_hand, *calibration_);
   }

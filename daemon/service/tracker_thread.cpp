@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/session/pose_message.hpp"
+
 namespace handeye {
 namespace {
 
@@ -149,13 +151,7 @@ body_t TrackerThread::body_message(const dtrack::Body& body) {
   body_t message{};
   message.body_id = body.id;
   message.tracked = body.tracked;
-  if (!body.tracked) return message;
-  const Eigen::Quaterniond q(body.room_from_body.linear());
-  message.q_wxyz[0] = q.w();
-  message.q_wxyz[1] = q.x();
-  message.q_wxyz[2] = q.y();
-  message.q_wxyz[3] = q.z();
-  for (int axis = 0; axis < 3; ++axis) message.t_mm[axis] = body.room_from_body.translation()(axis);
+  if (body.tracked) write_pose(body.room_from_body, message.q_wxyz, message.t_mm);
   return message;
 }
 

@@ -132,7 +132,8 @@ CalibrationResult Calibration::solve() {
                                     .estimate = found,
                                     .noise = options_.noise,
                                     .wanted = options_.start.wanted});
-  if (found.likelihood && finding.judgement) write_covariance(finding.judgement->covariance, result);
+  if (found.likelihood && finding.judgement)
+    write_covariance(finding.judgement->covariance, result);
   result.reason = finding.reason;
   result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
   result.advice = reason_advice(result.reason);

@@ -3,27 +3,14 @@
 
 #include <algorithm>
 
+#include "daemon/session/pose_message.hpp"
+
 namespace handeye {
 namespace {
 
 // What result_t says where there is nothing to say.
 constexpr double kNoTimeOffset = 0;
 constexpr double kNoTimeOffsetSigma = -1;
-
-void write_pose(const Pose& pose, double (&q_wxyz)[4], double (&t_mm)[3]) {
-  Eigen::Quaterniond q(pose.linear());
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
-  q_wxyz[0] = q.w();
-  q_wxyz[1] = q.x();
-  q_wxyz[2] = q.y();
-  q_wxyz[3] = q.z();
-  for (int axis = 0; axis < 3; ++axis) t_mm[axis] = pose.translation()(axis);
-}
-
-Pose read_pose(const double (&q_wxyz)[4], const double (&t_mm)[3]) {
-  return make_pose({q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]},
-                   Eigen::Map<const Eigen::Vector3d>(t_mm));
-}
 
 std::int32_t verdict_code(Verdict verdict) {
   switch (verdict) {

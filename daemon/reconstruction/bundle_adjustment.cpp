@@ -169,8 +169,7 @@ class Adjustment {
   }
 
   void write_back() {
-    for (std::size_t i = static_cast<std::size_t>(options_.first_variable); i < poses_.size();
-         ++i) {
+    for (auto i = static_cast<std::size_t>(options_.first_variable); i < poses_.size(); ++i) {
       if (used_[i]) scene_.keyframes[i].eye_from_scene = to_pose(poses_[i].data());
     }
   }

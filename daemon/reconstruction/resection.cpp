@@ -135,7 +135,7 @@ std::optional<Resection> refine_pose(const CameraModel& camera,
 
 std::optional<Resection> resect(const CameraModel& camera, const std::vector<PointMatch>& matches,
                                 const Pose& predicted, const ResectionOptions& options) {
-  if (const auto near = refine_pose(camera, matches, predicted, options)) return near;
+  if (auto near = refine_pose(camera, matches, predicted, options)) return near;
   const auto found = pose_by_ransac(camera, matches, options);
   if (!found) return std::nullopt;
   return refine_pose(camera, matches, *found, options);

@@ -174,6 +174,7 @@ StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions&
   if (motions.size() > kMaxMotions) motions.resize(kMaxMotions);
 
   std::vector<Candidate> candidates;
+  candidates.reserve(motions.size());
   for (const TwoViewMotion& motion : motions) {
     candidates.push_back(build_candidate(camera, options, frames, motion.second_from_first));
   }

@@ -164,7 +164,7 @@ std::optional<TimeOffset> correlate_angular_speed(const PoseBuffer& hand,
   const double speed_variance = variance_of_speeds(intervals);
   const auto reach = static_cast<int>(std::lround(options.search_s / options.grid_s));
   std::vector<Correlation> curve;
-  curve.reserve(static_cast<std::size_t>(2 * reach + 1));
+  curve.reserve(2 * static_cast<std::size_t>(reach) + 1);
   std::vector<HandLookup> hand_at_eye(eye.size());
   for (int step = -reach; step <= reach; ++step) {
     curve.push_back(

@@ -65,7 +65,7 @@ void CornerGrid::occupy(const std::vector<cv::Point2f>& features) {
   for (const cv::Point2f& feature : features) {
     const int column = std::clamp(static_cast<int>(feature.x) / cell_px_, 0, columns_ - 1);
     const int row = std::clamp(static_cast<int>(feature.y) / cell_px_, 0, rows_ - 1);
-    features_of_cell_[static_cast<std::size_t>(row * columns_ + column)].push_back(feature);
+    features_of_cell_[index_of(row, column)].push_back(feature);
   }
 }
 
@@ -103,8 +103,7 @@ bool CornerGrid::is_far_from_all(cv::Point2f pixel, int cell) const {
   const int row = cell / columns_;
   for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
-      for (const cv::Point2f& other :
-           features_of_cell_[static_cast<std::size_t>(r * columns_ + c)]) {
+      for (const cv::Point2f& other : features_of_cell_[index_of(r, c)]) {
         const cv::Point2f apart = other - pixel;
         if (apart.dot(apart) < min_squared) return false;
       }

@@ -31,6 +31,10 @@ class CornerGrid {
   int cell_count() const { return columns_ * rows_; }
 
  private:
+  std::size_t index_of(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
   void occupy(const std::vector<cv::Point2f>& features);
   bool best_in_cell(const cv::Mat& image, const cv::Mat& usable, int cell, Corner& corner);
   bool is_far_from_all(cv::Point2f pixel, int cell) const;

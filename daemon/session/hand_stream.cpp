@@ -4,6 +4,12 @@
 #include <algorithm>
 
 namespace handeye {
+namespace {
+
+// One damaged ts line is no new clock; a sender that was set up anew keeps to its new way.
+constexpr int kOthersThatSwitch = 20;
+
+}  // namespace
 
 std::optional<HandSample> HandStream::take(const Datagram& datagram) {
   if (parser_.parse(datagram.bytes, frame_) == dtrack::ParseStatus::kRejected) return std::nullopt;
@@ -27,25 +33,43 @@ HandSample HandStream::sample_of(int body_id, std::int64_t timestamp_ns) const {
 }
 
 std::int64_t HandStream::host_time_ns(std::int64_t arrival_ns) {
+  follow_device_clock();
+  const std::optional<double> device_s = device_time_s();
+  // A datagram without the time that others carry: as late as the one before it.
+  if (!device_s) return arrival_ns - lateness_ns_;
+  const std::int64_t host_ns = clock_.observe(*device_s, arrival_ns);
+  lateness_ns_ = arrival_ns - host_ns;
+  return host_ns;
+}
+
+void HandStream::follow_device_clock() {
   // ts2 wins over ts (protocol.md section 5).
-  const DeviceClock now = frame_.unix_time        ? DeviceClock::kUnixTime
-                          : frame_.seconds_of_day ? DeviceClock::kSecondsOfDay
-                                                  : DeviceClock::kNone;
-  if (now != device_clock_) {
-    clock_ = ClockModel();
-    device_clock_ = now;
+  const DeviceClock sent = frame_.unix_time        ? DeviceClock::kUnixTime
+                           : frame_.seconds_of_day ? DeviceClock::kSecondsOfDay
+                                                   : DeviceClock::kNone;
+  if (sent == device_clock_) {
+    others_in_a_row_ = 0;
+    return;
   }
-  switch (now) {
+  if (device_clock_ != DeviceClock::kUnknown && ++others_in_a_row_ < kOthersThatSwitch) return;
+  clock_ = ClockModel();
+  device_clock_ = sent;
+  lateness_ns_ = 0;
+  others_in_a_row_ = 0;
+}
+
+std::optional<double> HandStream::device_time_s() const {
+  switch (device_clock_) {
     case DeviceClock::kUnixTime:
-      return clock_.observe(frame_.unix_time->seconds + 1e-6 * frame_.unix_time->microseconds,
-                            arrival_ns);
+      if (!frame_.unix_time) return std::nullopt;
+      return frame_.unix_time->seconds + 1e-6 * frame_.unix_time->microseconds;
     case DeviceClock::kSecondsOfDay:
-      return clock_.observe(*frame_.seconds_of_day, arrival_ns);
+      return frame_.seconds_of_day;
     case DeviceClock::kNone:
     case DeviceClock::kUnknown:
       break;
   }
-  return arrival_ns;
+  return std::nullopt;
 }
 
 }  // namespace handeye

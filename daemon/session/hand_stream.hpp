@@ -18,7 +18,8 @@ class HandStream {
   explicit HandStream(int body_id) : body_id_(body_id) {}
 
   /// Nothing when the datagram was rejected. A body that is absent is hidden: `tracked` is false.
-  /// Without a device time in the datagram (no ts, no ts2) the arrival stands for it.
+  /// From a sender that sends no device time (no ts, no ts2) the arrival stands for it; a single
+  /// datagram that lacks it is taken to be as late as the one before.
   std::optional<HandSample> take(const Datagram& datagram);
 
   /// Another body of the last datagram, as a sample.
@@ -36,12 +37,16 @@ class HandStream {
   enum class DeviceClock { kUnknown, kNone, kSecondsOfDay, kUnixTime };
 
   std::int64_t host_time_ns(std::int64_t arrival_ns);
+  void follow_device_clock();
+  std::optional<double> device_time_s() const;
 
   int body_id_;
   dtrack::Parser parser_;
   dtrack::Frame frame_;
   ClockModel clock_;
   DeviceClock device_clock_{DeviceClock::kUnknown};
+  int others_in_a_row_{0};       ///< datagrams whose time is of another kind, or missing
+  std::int64_t lateness_ns_{0};  ///< arrival minus host time of the last that had a time
 };
 
 }  // namespace handeye

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/hand_stream.hpp"
 
+#include <optional>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "daemon/session/hand_path.hpp"
@@ -71,6 +74,41 @@ TEST(HandStream, StampsByTheTrackersClockNotByArrival) {
     }
     last_ns = sample->timestamp_ns;
   }
+}
+
+/// One damaged ts line must not throw away what has been learnt about the clock.
+TEST(HandStream, KeepsTheClockWhenOneDatagramLacksTheTime) {
+  HandStream stream(4);
+  constexpr std::uint32_t kOdd = 400;
+  std::int64_t last_ns = 0;
+  for (std::uint32_t k = 0; k < 600; ++k) {
+    const double device_s = 43'000.0 + 1e-9 * static_cast<double>(k * kPeriod_ns);
+    const std::int64_t jitter_ns = k % 3 == 0 ? 0 : 3'000'000;
+    const std::int64_t arrival_ns = 5'000'000'000 + k * kPeriod_ns + kLatency_ns + jitter_ns;
+    const auto time_s = k == kOdd ? std::nullopt : std::optional(device_s);
+    const auto sample = stream.take({arrival_ns, datagram(k, time_s, 0)});
+    ASSERT_TRUE(sample);
+    const auto step_ns = static_cast<double>(sample->timestamp_ns - last_ns);
+    const bool beside_odd = k == kOdd || k == kOdd + 1;
+    if (k > 300) {
+      EXPECT_NEAR(step_ns, static_cast<double>(kPeriod_ns), beside_odd ? 4e6 : 5e4) << k;
+    }
+    last_ns = sample->timestamp_ns;
+  }
+}
+
+TEST(HandStream, FollowsASenderThatStopsSendingTheTime) {
+  HandStream stream(4);
+  std::int64_t arrival_ns = 5'000'000'000;
+  for (std::uint32_t k = 0; k < 300; ++k, arrival_ns += kPeriod_ns) {
+    stream.take({arrival_ns, datagram(k, 100.0 + 1e-9 * static_cast<double>(k * kPeriod_ns), 0)});
+  }
+  std::optional<HandSample> sample;
+  for (std::uint32_t k = 300; k < 400; ++k, arrival_ns += kPeriod_ns) {
+    sample = stream.take({arrival_ns, datagram(k, std::nullopt, 0)});
+  }
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->timestamp_ns, arrival_ns - kPeriod_ns);
 }
 
 TEST(HandStream, WithoutDeviceTimeArrivalStandsForIt) {

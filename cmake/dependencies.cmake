@@ -15,13 +15,14 @@ pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 find_program(LCM_GEN lcm-gen REQUIRED)
 if(HANDEYE_TESTS)
   find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
   include(GoogleTest)
 endif()
 
 # OpenCV: only the modules that are used. Debian ships the CMake configuration in libopencv-dev alone, which pulls in
 # every module and its dependencies; the single -dev packages and these targets spare a hospital's machine that.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc imgcodecs features2d flann calib3d video)
+foreach(module core imgproc imgcodecs features2d flann calib3d video aruco)
   find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
   add_library(opencv::${module} SHARED IMPORTED)
   set_target_properties(

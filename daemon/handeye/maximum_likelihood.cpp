@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/noise_model.hpp"
 #include "daemon/handeye/pose_problem.hpp"
 #include "daemon/handeye/starts.hpp"
@@ -237,6 +238,16 @@ std::optional<MaximumLikelihoodResult> maximum_likelihood(
   }
   if (!best) return std::nullopt;
   return estimate_without_outliers(observations, best->result.solution, options);
+}
+
+std::optional<HandEyeSolution> maximum_likelihood_unknown_scale(const HandEyeProblem& problem) {
+  std::vector<HandEyeObservation> observations;
+  observations.reserve(problem.poses.size());
+  for (const PosePair& pair : problem.poses) observations.push_back({.poses = pair});
+  const auto result = maximum_likelihood(
+      observations, {.noise = problem.noise, .estimate_noise = problem.estimate_noise});
+  if (!result) return std::nullopt;
+  return result->solution;
 }
 
 }  // namespace handeye

@@ -38,24 +38,26 @@ std::size_t nearest_direction(const std::vector<Eigen::Vector3d>& directions,
   return static_cast<std::size_t>(best - directions.begin());
 }
 
-std::vector<PosePair> thinned(std::span<const PosePair> poses, std::size_t max_poses) {
-  std::vector<PosePair> kept;
+/// Indices of the poses that are looked at.
+std::vector<std::size_t> thinned(std::span<const PosePair> poses, std::size_t max_poses) {
+  std::vector<std::size_t> kept;
   const std::size_t step = std::max<std::size_t>(1, (poses.size() + max_poses - 1) / max_poses);
   for (std::size_t i = 0; i < poses.size(); i += step) {
     const PosePair& pair = poses[i];
     if (pair.room_from_hand.matrix().allFinite() && pair.eye_from_scene.matrix().allFinite()) {
-      kept.push_back(pair);
+      kept.push_back(i);
     }
   }
   return kept;
 }
 
-std::vector<Candidate> all_pairs(const std::vector<PosePair>& poses, double min_angle_rad) {
+std::vector<Candidate> all_pairs(std::span<const PosePair> poses,
+                                 const std::vector<std::size_t>& kept, double min_angle_rad) {
   const std::vector<Eigen::Vector3d> directions = axis_directions();
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    for (std::size_t j = i + 1; j < poses.size(); ++j) {
-      const auto [hand, eye] = movement_between(poses[i], poses[j]);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    for (std::size_t j = i + 1; j < kept.size(); ++j) {
+      const auto [hand, eye] = movement_between(poses[kept[i]], poses[kept[j]]);
       const Eigen::Vector3d turn = log_so3(hand.linear());
       const double angle = turn.norm();
       if (angle < min_angle_rad) continue;
@@ -129,21 +131,22 @@ std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::siz
 
 }  // namespace
 
-std::vector<Movement> select_movements(std::span<const PosePair> poses,
-                                       const SelectionOptions& options) {
-  const std::vector<PosePair> kept = thinned(poses, options.max_poses);
-  std::vector<Candidate> candidates = all_pairs(kept, rad_from_deg(options.lowest_min_angle_deg));
+Selection select_movements(std::span<const PosePair> poses, const SelectionOptions& options) {
+  const std::vector<std::size_t> kept = thinned(poses, options.max_poses);
+  std::vector<Candidate> candidates =
+      all_pairs(poses, kept, rad_from_deg(options.lowest_min_angle_deg));
   const double tolerance_rad =
       std::max(rad_from_deg(options.min_tolerance_deg),
                options.tolerance_factor * median_difference_rad(candidates));
   std::erase_if(candidates, [&](const Candidate& c) { return c.difference_rad > tolerance_rad; });
 
-  std::vector<Movement> movements;
+  Selection selection;
   for (const Candidate& c :
        spread(in_window(candidates, options), kept.size(), options.max_movements)) {
-    movements.push_back(movement_between(kept[c.i], kept[c.j]));
+    selection.movements.push_back(movement_between(poses[kept[c.i]], poses[kept[c.j]]));
+    selection.pairs.push_back({kept[c.i], kept[c.j]});
   }
-  return movements;
+  return selection;
 }
 
 }  // namespace handeye

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -20,10 +21,15 @@ struct SelectionOptions {
   double tolerance_factor{4};     ///< and by so many times their median difference
 };
 
+struct Selection {
+  std::vector<Movement> movements;
+  /// Between which poses each movement is: indices i, j into the poses selected from.
+  std::vector<std::array<std::size_t, 2>> pairs;
+};
+
 /// Movements between pairs (i, j) of the whole sequence rather than neighbours (Schmidt, Vogt,
 /// Niemann 2004): large angles, axes spread, poses used evenly, their number bounded; hand and eye
 /// must turn by the same angle. Deterministic. Pairs that are not finite are left out.
-std::vector<Movement> select_movements(std::span<const PosePair> poses,
-                                       const SelectionOptions& options = {});
+Selection select_movements(std::span<const PosePair> poses, const SelectionOptions& options = {});
 
 }  // namespace handeye

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include "daemon/handeye/linear_parts.hpp"
-#include "daemon/handeye/methods.hpp"
+#include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/movements.hpp"
 #include "daemon/handeye/selection.hpp"
 
@@ -28,9 +28,11 @@ Eigen::Vector3d translation_for_scale(const std::vector<Movement>& movements,
 
 std::vector<HandEyeSolution> starting_solutions(std::span<const PosePair> poses) {
   std::vector<HandEyeSolution> starts;
-  const std::vector<Movement> movements = select_movements(poses);
-  for (const Method& method : unknown_scale_methods()) {
-    if (const auto solution = method.solve(movements)) starts.push_back(*solution);
+  const std::vector<Movement> movements = select_movements(poses).movements;
+  for (const Solver solve : {dq_scale_separate, andreff}) {
+    if (const auto solution = solve({.poses = poses, .movements = movements})) {
+      starts.push_back(*solution);
+    }
   }
   const auto normalised = normalise(movements);
   if (!normalised) return starts;

@@ -33,17 +33,9 @@ struct HandEyeSolution {
   double scale_units_per_mm{1.0};        ///< s: scene units per mm
 };
 
-/// A method that solves from movements; nothing when the data do not determine the answer.
-using MovementSolver = std::optional<HandEyeSolution> (*)(std::span<const Movement> movements);
-
-struct Method {
-  std::string_view name;
-  MovementSolver solve;
-  std::string_view source;  ///< paper and equation
-};
-
-/// Every method with unknown scale, in the order in which results list them.
-std::span<const Method> unknown_scale_methods();
+/// Whether the eye's translations are in mm (a pattern) or in units of their own (a
+/// reconstruction).
+enum class ScaleMode { kKnown, kUnknown };
 
 /// Standard deviations per axis, used as weights.
 struct PoseNoise {
@@ -52,6 +44,27 @@ struct PoseNoise {
   double eye_rotation_rad{0.0005};
   double eye_translation_mm{0.15};
 };
+
+/// What every method is given. Most use the movements, the likelihood the poses.
+struct HandEyeProblem {
+  std::span<const PosePair> poses;      ///< in order of time
+  std::span<const Movement> movements;  ///< selected from them
+  PoseNoise noise;                      ///< assumed; where it is estimated, the start
+  bool estimate_noise{true};
+};
+
+/// Solves; nothing when the data do not determine the answer. With known scale the eye's
+/// translations are in mm and the solution's scale is 1.
+using Solver = std::optional<HandEyeSolution> (*)(const HandEyeProblem& problem);
+
+struct Method {
+  std::string_view name;  ///< as users know it; the same name may be in both tables
+  Solver solve;
+  std::string_view source;  ///< paper and equation
+};
+
+/// Every method for this case, in the order in which results list them; the last one is the answer.
+std::span<const Method> methods(ScaleMode scale);
 
 /// The seed's residuals (section 5 of the paper): E against X H X^-1 in scene scale, means over
 /// 1000 random pairs i != j, fixed generator.

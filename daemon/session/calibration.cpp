@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/handeye/selection.hpp"
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/guidance.hpp"
+#include "daemon/session/method_comparison.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "daemon/session/verdict.hpp"
 
@@ -34,20 +34,12 @@ std::vector<PosePair> pose_pairs(const Estimate& estimate) {
   return pairs;
 }
 
-/// Every method's answer to the same movements, the likelihood's last: the answer.
-std::vector<MethodResult> compare_methods(const Estimate& estimate) {
+/// Every method's answer to the same poses; the last is the one that this calibration gives.
+std::vector<MethodResult> methods_of(const Estimate& estimate, const PoseNoise& noise) {
   const std::vector<PosePair> pairs = pose_pairs(estimate);
-  const std::vector<Movement> movements = select_movements(pairs);
-  std::vector<MethodResult> results;
-  for (const Method& method : unknown_scale_methods()) {
-    const Stopwatch stopwatch;
-    MethodResult result{.name = std::string(method.name)};
-    result.solution = method.solve(movements);
-    result.time_ms = stopwatch.elapsed_ms();
-    if (result.solution) result.residuals = seed_residuals(pairs, *result.solution);
-    results.push_back(std::move(result));
-  }
-  MethodResult answer{.name = "maximum_likelihood"};
+  const std::span<const Method> all = methods(ScaleMode::kUnknown);
+  std::vector<MethodResult> results = compare_methods(all.first(all.size() - 1), pairs, noise);
+  MethodResult answer{.name = std::string(all.back().name)};
   if (estimate.likelihood) {
     answer.solution = estimate.likelihood->solution;
     answer.residuals = seed_residuals(pairs, *answer.solution);
@@ -63,8 +55,8 @@ void write_covariance(const Matrix6d& covariance, CalibrationResult& result) {
   result.sigma_translation_mm = sigma_translation_mm(covariance);
 }
 
-void write_estimate(const Estimate& estimate, CalibrationResult& result) {
-  result.methods = compare_methods(estimate);
+void write_estimate(const Estimate& estimate, const PoseNoise& noise, CalibrationResult& result) {
+  result.methods = methods_of(estimate, noise);
   if (estimate.correlation) {
     result.time_offset_s = estimate.time_offset_s;
     result.time_offset_sigma_s = estimate.time_offset_sigma_s;
@@ -125,7 +117,7 @@ CalibrationResult Calibration::solve() {
   const Reconstruction reconstruction = reconstruct(result);
   const Stopwatch stopwatch;
   const Estimate found = estimate(reconstruction.frames, hand_, options_.noise);
-  write_estimate(found, result);
+  write_estimate(found, options_.noise, result);
   const Finding finding = conclude({.frames_received = frames_,
                                     .hand_path = hand_path_.room_from_hand(),
                                     .reconstruction = reconstruction,

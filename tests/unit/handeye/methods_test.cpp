@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/handeye/methods.hpp"
+#include "daemon/handeye/methods/methods.hpp"
 
 #include <cmath>
 #include <limits>
@@ -18,6 +18,11 @@ using synthetic::random_poses;
 using synthetic::random_truth;
 using synthetic::Truth;
 
+/// Those that solve from movements alone.
+std::span<const Method> movement_methods() {
+  return methods(ScaleMode::kUnknown).first(2);
+}
+
 void expect_exact(const HandEyeSolution& found, const Truth& truth, const std::string& what) {
   const HandEyeSolution& wanted = truth.solution;
   EXPECT_LT(rotation_angle_rad(found.hand_from_eye.linear(), wanted.hand_from_eye.linear()), 1e-9)
@@ -30,12 +35,12 @@ void expect_exact(const HandEyeSolution& found, const Truth& truth, const std::s
 
 TEST(Methods, AreExactOnExactDataWhateverTheScale) {
   std::mt19937 generator(1);
-  for (const Method& method : unknown_scale_methods()) {
+  for (const Method& method : movement_methods()) {
     for (int trial = 0; trial < 200; ++trial) {
       const double scale = std::pow(10.0, -6 + 12 * (trial / 199.0));
       const Truth truth = random_truth(generator, scale);
       const auto poses = random_poses(truth, generator, 4 + trial % 8, rad_from_deg(60));
-      const auto found = method.solve(all_movements(poses));
+      const auto found = method.solve({.movements = all_movements(poses)});
       ASSERT_TRUE(found) << method.name << " trial " << trial;
       expect_exact(*found, truth, std::string(method.name) + " scale " + std::to_string(scale));
     }
@@ -44,11 +49,11 @@ TEST(Methods, AreExactOnExactDataWhateverTheScale) {
 
 TEST(Methods, AreExactOnSmallAndOnLargeRotations) {
   std::mt19937 generator(2);
-  for (const Method& method : unknown_scale_methods()) {
+  for (const Method& method : movement_methods()) {
     for (const double angle_deg : {8.0, 30.0, 120.0, 180.0}) {
       const Truth truth = random_truth(generator, 0.013);
       const auto poses = random_poses(truth, generator, 30, rad_from_deg(angle_deg));
-      const auto found = method.solve(select_movements(poses));
+      const auto found = method.solve({.movements = select_movements(poses).movements});
       ASSERT_TRUE(found) << method.name << " " << angle_deg;
       expect_exact(*found, truth, std::string(method.name) + " " + std::to_string(angle_deg));
     }
@@ -60,7 +65,7 @@ TEST(Methods, AreExactOnSmallAndOnLargeRotations) {
 TEST(Methods, AreExactNearHalfATurn) {
   std::mt19937 generator(3);
   std::normal_distribution<double> normal;
-  for (const Method& method : unknown_scale_methods()) {
+  for (const Method& method : movement_methods()) {
     for (const double short_of_rad : {1e-2, 1e-5, 1e-9}) {
       const Truth truth = random_truth(generator, 2.5);
       std::vector<Movement> movements;
@@ -77,7 +82,7 @@ TEST(Methods, AreExactNearHalfATurn) {
         movement.eye_j_from_eye_i.translation() *= truth.solution.scale_units_per_mm;
         movements.push_back(movement);
       }
-      const auto found = method.solve(movements);
+      const auto found = method.solve({.movements = movements});
       ASSERT_TRUE(found) << method.name;
       expect_exact(*found, truth, std::string(method.name) + " " + std::to_string(short_of_rad));
     }
@@ -88,14 +93,14 @@ TEST(Methods, DoNotDependOnTheUnitOfTheScene) {
   const synthetic::Recording recording = synthetic::record(synthetic::scope(), synthetic::free_hand,
                                                            150, synthetic::tracker_and_camera(), 4);
   auto poses = recording.poses();
-  const auto movements = select_movements(poses);
-  for (const Method& method : unknown_scale_methods()) {
-    const auto plain = method.solve(movements);
+  const auto movements = select_movements(poses).movements;
+  for (const Method& method : movement_methods()) {
+    const auto plain = method.solve({.movements = movements});
     ASSERT_TRUE(plain);
     for (const double factor : {1e-6, 1e6}) {
       auto scaled = movements;
       for (Movement& movement : scaled) movement.eye_j_from_eye_i.translation() *= factor;
-      const auto found = method.solve(scaled);
+      const auto found = method.solve({.movements = scaled});
       ASSERT_TRUE(found);
       expect_exact({found->hand_from_eye, found->scale_units_per_mm / factor}, {*plain, {}},
                    std::string(method.name));
@@ -104,12 +109,12 @@ TEST(Methods, DoNotDependOnTheUnitOfTheScene) {
 }
 
 TEST(Methods, StayNearTheTruthUnderNoise) {
-  for (const Method& method : unknown_scale_methods()) {
+  for (const Method& method : movement_methods()) {
     for (std::uint32_t seed = 0; seed < 10; ++seed) {
       const Truth truth = synthetic::scope(0.02);
       const synthetic::Recording recording = synthetic::record(
           truth, synthetic::free_hand, 300, synthetic::tracker_and_camera(), seed);
-      const auto found = method.solve(select_movements(recording.poses()));
+      const auto found = method.solve({.movements = select_movements(recording.poses()).movements});
       ASSERT_TRUE(found);
       const Vector6d error =
           synthetic::error_of(found->hand_from_eye, truth.solution.hand_from_eye);
@@ -122,8 +127,8 @@ TEST(Methods, StayNearTheTruthUnderNoise) {
 
 /// Every solver must say nothing rather than anything.
 void expect_nothing(const std::vector<Movement>& movements, const std::string& what) {
-  for (const Method& method : unknown_scale_methods()) {
-    EXPECT_FALSE(method.solve(movements)) << method.name << ": " << what;
+  for (const Method& method : movement_methods()) {
+    EXPECT_FALSE(method.solve({.movements = movements})) << method.name << ": " << what;
   }
 }
 
@@ -152,8 +157,8 @@ TEST(Methods, GiveNothingOnDegenerateData) {
 TEST(Methods, SolveTheRealRobotPosesNearHalfATurn) {
   const auto poses = synthetic::real_poses("moveit.csv");
   if (poses.empty()) GTEST_SKIP() << "no poses/moveit.csv";
-  for (const Method& method : unknown_scale_methods()) {
-    const auto found = method.solve(select_movements(poses));
+  for (const Method& method : movement_methods()) {
+    const auto found = method.solve({.movements = select_movements(poses).movements});
     ASSERT_TRUE(found) << method.name;
     EXPECT_NEAR(found->scale_units_per_mm, 1.0, 0.02) << method.name;
     const Residuals residuals = seed_residuals(poses, *found);

@@ -31,15 +31,15 @@ TEST(Movements, AreWhatTheirNamesSay) {
 }
 
 TEST(Selection, IsBoundedHoweverLongTheSequence) {
-  EXPECT_LE(select_movements(free_hand(100)).size(), 500U);
-  const auto movements = select_movements(free_hand(1500));
+  EXPECT_LE(select_movements(free_hand(100)).movements.size(), 500U);
+  const auto movements = select_movements(free_hand(1500)).movements;
   EXPECT_LE(movements.size(), 500U);
   EXPECT_GT(movements.size(), 300U);
 }
 
 TEST(Selection, TakesLargeAnglesAboutAllAxes) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Movement& movement : select_movements(free_hand(300))) {
+  for (const Movement& movement : select_movements(free_hand(300)).movements) {
     EXPECT_GE(angle_deg(movement), 15.0);
     EXPECT_LE(angle_deg(movement), 175.0);
     const Eigen::Vector3d axis = log_so3(movement.hand_j_from_hand_i.linear()).normalized();
@@ -53,7 +53,7 @@ TEST(Selection, TakesLargeAnglesAboutAllAxes) {
 TEST(Selection, LowersTheSmallestAngleWhenTooFewAreLarger) {
   std::mt19937 generator(2);
   const auto poses = synthetic::random_poses(synthetic::scope(), generator, 20, rad_from_deg(4));
-  const auto movements = select_movements(poses);
+  const auto movements = select_movements(poses).movements;
   EXPECT_GE(movements.size(), 50U);
   for (const Movement& movement : movements) EXPECT_GE(angle_deg(movement), 1.0);
 }
@@ -63,15 +63,15 @@ TEST(Selection, LeavesOutWhatDoesNotTurnAlike) {
   for (std::size_t k = 10; k < poses.size(); k += 10) {
     poses[k].eye_from_scene.linear() *= exp_so3({0.3, 0.2, 0});
   }
-  for (const Movement& movement : select_movements(poses)) {
+  for (const Movement& movement : select_movements(poses).movements) {
     const double eye_deg = deg_from_rad(rotation_angle_rad(movement.eye_j_from_eye_i.linear()));
     EXPECT_LT(std::abs(eye_deg - angle_deg(movement)), 2.0);
   }
 }
 
 TEST(Selection, IsTheSameEveryTime) {
-  const auto a = select_movements(free_hand(300));
-  const auto b = select_movements(free_hand(300));
+  const auto a = select_movements(free_hand(300)).movements;
+  const auto b = select_movements(free_hand(300)).movements;
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_EQ(a[k].hand_j_from_hand_i.matrix(), b[k].hand_j_from_hand_i.matrix());
@@ -79,8 +79,8 @@ TEST(Selection, IsTheSameEveryTime) {
 }
 
 TEST(Selection, OfNothingIsNothing) {
-  EXPECT_TRUE(select_movements({}).empty());
-  EXPECT_TRUE(select_movements(free_hand(1)).empty());
+  EXPECT_TRUE(select_movements({}).movements.empty());
+  EXPECT_TRUE(select_movements(free_hand(1)).movements.empty());
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/dual_quaternion.hpp"
 #include "daemon/handeye/linear_parts.hpp"
-#include "daemon/handeye/methods.hpp"
+#include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/movements.hpp"
 
 namespace handeye {
 
-std::optional<HandEyeSolution> dq_scale_separate(std::span<const Movement> movements) {
-  const auto normalised = normalise(movements);
+std::optional<HandEyeSolution> dq_scale_separate(const HandEyeProblem& problem) {
+  const auto normalised = normalise(problem.movements);
   if (!normalised) return std::nullopt;
   const auto rotation = eye_from_hand_rotation(normalised->movements);
   if (!rotation) return std::nullopt;

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include "daemon/handeye/linear_parts.hpp"
-#include "daemon/handeye/methods.hpp"
+#include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/movements.hpp"
 
 namespace handeye {
@@ -31,8 +31,8 @@ Eigen::Matrix<double, 12, 13> rows_of(const Movement& movement) {
 
 }  // namespace
 
-std::optional<HandEyeSolution> andreff(std::span<const Movement> movements) {
-  const auto normalised = normalise(movements);
+std::optional<HandEyeSolution> andreff(const HandEyeProblem& problem) {
+  const auto normalised = normalise(problem.movements);
   if (!normalised) return std::nullopt;
   const std::vector<Movement>& all = normalised->movements;
   Eigen::MatrixXd stacked(12 * static_cast<Eigen::Index>(all.size()), 13);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/handeye/consensus.hpp"
+
 namespace handeye {
 namespace {
 
@@ -12,7 +14,6 @@ struct Candidate {
   std::size_t i{0};
   std::size_t j{0};
   double angle_rad{0};       ///< of the hand
-  double difference_rad{0};  ///< hand's against eye's
   std::size_t direction{0};  ///< of the axis
 };
 
@@ -39,42 +40,34 @@ std::size_t nearest_direction(const std::vector<Eigen::Vector3d>& directions,
 }
 
 /// Indices of the poses that are looked at.
-std::vector<std::size_t> thinned(std::span<const PosePair> poses, std::size_t max_poses) {
+std::vector<std::size_t> thinned(std::size_t poses, std::size_t max_poses) {
   std::vector<std::size_t> kept;
-  const std::size_t step = std::max<std::size_t>(1, (poses.size() + max_poses - 1) / max_poses);
-  for (std::size_t i = 0; i < poses.size(); i += step) {
-    const PosePair& pair = poses[i];
-    if (pair.room_from_hand.matrix().allFinite() && pair.eye_from_scene.matrix().allFinite()) {
-      kept.push_back(i);
-    }
-  }
+  const std::size_t step = std::max<std::size_t>(1, (poses + max_poses - 1) / max_poses);
+  for (std::size_t i = 0; i < poses; i += step) kept.push_back(i);
   return kept;
 }
 
+/// All movements between right poses that hand and eye see alike.
 std::vector<Candidate> all_pairs(std::span<const PosePair> poses,
-                                 const std::vector<std::size_t>& kept, double min_angle_rad) {
+                                 const std::vector<std::size_t>& right,
+                                 const ScrewAgreement& agreement, const SelectionOptions& options) {
   const std::vector<Eigen::Vector3d> directions = axis_directions();
+  const double min_angle_rad = rad_from_deg(options.lowest_min_angle_deg);
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    for (std::size_t j = i + 1; j < kept.size(); ++j) {
-      const auto [hand, eye] = movement_between(poses[kept[i]], poses[kept[j]]);
-      const Eigen::Vector3d turn = log_so3(hand.linear());
-      const double angle = turn.norm();
-      if (angle < min_angle_rad) continue;
-      candidates.push_back({i, j, angle, std::abs(angle - rotation_angle_rad(eye.linear())),
-                            nearest_direction(directions, turn)});
+  for (const std::size_t i : right) {
+    for (const std::size_t j : right) {
+      if (j <= i) continue;
+      const Movement movement = movement_between(poses[i], poses[j]);
+      const ScrewPair screw = screw_pair(movement);
+      if (screw.hand_angle_rad < min_angle_rad || !agreement.agrees(screw, options.tolerance)) {
+        continue;
+      }
+      candidates.push_back(
+          {i, j, screw.hand_angle_rad,
+           nearest_direction(directions, log_so3(movement.hand_j_from_hand_i.linear()))});
     }
   }
   return candidates;
-}
-
-double median_difference_rad(std::vector<Candidate> candidates) {
-  if (candidates.empty()) return 0;
-  const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(candidates.size() / 2);
-  std::nth_element(
-      candidates.begin(), middle, candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.difference_rad < b.difference_rad; });
-  return middle->difference_rad;
 }
 
 /// The angle window: at least the smallest angle, halved until there are enough; not near 180
@@ -100,7 +93,7 @@ std::vector<Candidate> in_window(const std::vector<Candidate>& candidates,
 
 /// Direction by direction in turn, each the largest angle left whose poses are not yet worn out.
 std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::size_t poses,
-                              std::size_t max_movements) {
+                              std::size_t right, std::size_t max_movements) {
   std::array<std::vector<Candidate>, 13> bins;
   for (const Candidate& c : candidates) bins[c.direction].push_back(c);
   for (auto& bin : bins) {
@@ -108,7 +101,7 @@ std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::siz
       return a.angle_rad > b.angle_rad;
     });
   }
-  const std::size_t max_uses = 1 + 4 * max_movements / std::max<std::size_t>(poses, 1);
+  const std::size_t max_uses = 1 + 4 * max_movements / std::max<std::size_t>(right, 1);
   std::vector<std::size_t> uses(poses, 0);
   std::array<std::size_t, 13> next{};
   std::vector<Candidate> chosen;
@@ -132,19 +125,21 @@ std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::siz
 }  // namespace
 
 Selection select_movements(std::span<const PosePair> poses, const SelectionOptions& options) {
-  const std::vector<std::size_t> kept = thinned(poses, options.max_poses);
-  std::vector<Candidate> candidates =
-      all_pairs(poses, kept, rad_from_deg(options.lowest_min_angle_deg));
-  const double tolerance_rad =
-      std::max(rad_from_deg(options.min_tolerance_deg),
-               options.tolerance_factor * median_difference_rad(candidates));
-  std::erase_if(candidates, [&](const Candidate& c) { return c.difference_rad > tolerance_rad; });
+  std::vector<std::size_t> kept = thinned(poses.size(), options.max_poses);
+  std::vector<PosePair> looked_at;
+  for (const std::size_t i : kept) looked_at.push_back(poses[i]);
+  const Consensus consensus = find_consensus(looked_at, {.scale = options.scale});
 
   Selection selection;
+  for (const std::size_t i : consensus.wrong) selection.wrong_poses.push_back(kept[i]);
+  std::erase_if(kept, [&](std::size_t i) {
+    return std::binary_search(selection.wrong_poses.begin(), selection.wrong_poses.end(), i);
+  });
+  const std::vector<Candidate> candidates = all_pairs(poses, kept, consensus.agreement, options);
   for (const Candidate& c :
-       spread(in_window(candidates, options), kept.size(), options.max_movements)) {
-    selection.movements.push_back(movement_between(poses[kept[c.i]], poses[kept[c.j]]));
-    selection.pairs.push_back({kept[c.i], kept[c.j]});
+       spread(in_window(candidates, options), poses.size(), kept.size(), options.max_movements)) {
+    selection.movements.push_back(movement_between(poses[c.i], poses[c.j]));
+    selection.pairs.push_back({c.i, c.j});
   }
   return selection;
 }

@@ -11,20 +11,21 @@
 namespace handeye {
 
 struct SelectionOptions {
+  ScaleMode scale{ScaleMode::kUnknown};
   std::size_t max_poses{200};  ///< longer sequences are thinned evenly
   std::size_t max_movements{500};
   std::size_t enough{50};  ///< below so many the smallest angle is halved
   double min_angle_deg{15};
   double lowest_min_angle_deg{1};  ///< smaller turns say nothing, however few there are
   double max_angle_deg{175};  ///< beyond it the axis is ambiguous; dropped where others are left
-  double min_tolerance_deg{0.5};  ///< hand and eye angles of a movement may always differ so much
-  double tolerance_factor{4};     ///< and by so many times their median difference
+  double tolerance{4};        ///< sigma within which hand and eye must agree (consensus.hpp)
 };
 
 struct Selection {
   std::vector<Movement> movements;
   /// Between which poses each movement is: indices i, j into the poses selected from.
   std::vector<std::array<std::size_t, 2>> pairs;
+  std::vector<std::size_t> wrong_poses;  ///< found among those looked at, and left out; ascending
 };
 
 /// Movements between pairs (i, j) of the whole sequence rather than neighbours (Schmidt, Vogt,

@@ -28,6 +28,8 @@ _handeye_value() {
     --mask) _handeye_files "$current" '*.png' ;;
     --save | --truth) _handeye_files "$current" '*.json' ;;
     --camera | --config | --intrinsics) _handeye_files "$current" ;;
+    --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
+    --motion) _handeye_words 'free translation rotation single-axis pivot static' "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
     --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-*) COMPREPLY=() ;;
     *) return 1 ;;

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,7 @@ namespace {
 /// What CLI11 fills in and parse_command_line then understands.
 struct RawOptions {
   std::string motion{"free"};
+  std::optional<std::string> board;
   std::vector<double> noise_deg_mm{SimulatorOptions{}.tracker_noise_deg,
                                    SimulatorOptions{}.tracker_noise_mm};
   std::string camera_out;
@@ -28,6 +30,13 @@ void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOpti
   command.add_option("--motion", raw.motion, "How the scope is moved")
       ->check(CLI::IsMember({"free", "translation", "rotation", "single-axis", "pivot", "static"}))
       ->capture_default_str();
+  command
+      .add_option(
+          "--board", raw.board,
+          "A flat calibration board instead of tissue: chessboard:COLSxROWS:SQUARE_MM "
+          "(inner corners) or charuco:COLSxROWS:SQUARE_MM:MARKER_MM:DICTIONARY (squares). "
+          "At 640x480, chessboard:9x6:4 and charuco:8x6:6:4.5:DICT_4X4_50 stay mostly in view")
+      ->type_name("BOARD");
   command.add_option("--rate", options.camera_rate_hz, "Frames a second")
       ->check(CLI::Range(1.0, 240.0))
       ->capture_default_str();
@@ -88,9 +97,16 @@ CLI::App* add_record(CLI::App& program, CommandLine& line, RawOptions& raw) {
   return record;
 }
 
+Board board_from(const std::string& text) {
+  auto parsed = parse_board(text);
+  if (const auto* problem = std::get_if<std::string>(&parsed)) throw UsageError(*problem);
+  return std::get<Board>(parsed);
+}
+
 /// The checks and conversions that go beyond a single option.
 void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   line.simulator.motion = motion_from_name(raw.motion).value();
+  if (raw.board) line.simulator.board = board_from(*raw.board);
   line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
   line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);
   if (!raw.camera_out.empty()) line.camera_out = raw.camera_out;

@@ -78,26 +78,31 @@ void Renderer::render(const Pose& surface_from_eye, std::uint64_t frame_number, 
                   padded(rotation.col(1)), padded(rotation.col(2))};
   grey.create(camera_.height, camera_.width, CV_8UC1);
   const std::uint64_t frame_bits = mix(seed_, frame_number);
-  for (int row = 0; row < camera_.height; ++row) {
-    const std::uint64_t offset = mix(frame_bits, static_cast<std::uint64_t>(row)) % kNoiseTable;
-    render_row(row, view, noise_.data() + offset, grey.ptr<std::uint8_t>(row));
-  }
+  surface_->visit([&](const auto& kind) {
+    for (int row = 0; row < camera_.height; ++row) {
+      const std::uint64_t offset = mix(frame_bits, static_cast<std::uint64_t>(row)) % kNoiseTable;
+      render_row(kind, row, view, noise_.data() + offset, grey.ptr<std::uint8_t>(row));
+    }
+  });
 }
 
 float Renderer::depth_of_first_pixel(int row, const View& view) const {
   const cv::Vec2f ray = rays_(row, 0);
   const Eigen::Array4f direction = ray[0] * view.x_axis + ray[1] * view.y_axis + view.z_axis;
-  const auto depth =
-      surface_->relief.intersect(view.origin.head<3>().cast<double>().matrix(),
-                                 direction.head<3>().cast<double>().matrix(), kFarthestMm);
+  const auto depth = surface_->intersect(view.origin.head<3>().cast<double>().matrix(),
+                                         direction.head<3>().cast<double>().matrix(), kFarthestMm);
   return depth ? static_cast<float>(*depth) : static_cast<float>(kFarthestMm);
 }
 
-void Renderer::render_row(int row, const View& view, const float* noise, std::uint8_t* out) {
+template <typename Kind>
+void Renderer::render_row(const Kind& kind, int row, const View& view, const float* noise,
+                          std::uint8_t* out) {
   const cv::Vec2f* rays = rays_[row];
   float* depths = depth_mm_[row];
   const float* depths_above = row > 0 ? depth_mm_[row - 1] : nullptr;
-  const auto footprint_factor = static_cast<float>(1.0 / camera_.fx);
+  const auto pixel = static_cast<float>(1.0 / camera_.fx);
+  const Eigen::Array4f to_next_column = pixel * view.x_axis;
+  const Eigen::Array4f to_next_row = static_cast<float>(1.0 / camera_.fy) * view.y_axis;
   const auto light =
       static_cast<float>(options_.nominal_distance_mm * options_.nominal_distance_mm / 255.0);
 
@@ -115,7 +120,7 @@ void Renderer::render_row(int row, const View& view, const float* noise, std::ui
     float approach = 0;
     for (int step = 0; step < kMaxNewtonSteps; ++step) {
       point = view.origin + depth * direction;
-      node = surface_->relief.sample(point[0], point[1]);
+      node = kind.sample(point[0], point[1]);
       approach = node[1] * direction[0] + node[2] * direction[1] - direction[2];
       const float change = (point[2] - node[0]) / approach;
       depth += change;
@@ -130,9 +135,9 @@ void Renderer::render_row(int row, const View& view, const float* noise, std::ui
     const float normal_squared = 1.0F + node[1] * node[1] + node[2] * node[2];
     const float cosine = approach / std::sqrt(ray_squared * normal_squared);
     const float distance_squared = depth * depth * ray_squared;
-    const float footprint_mm = depth * footprint_factor / std::max(cosine, 0.1F);
 
-    const float albedo = surface_->texture.sample(point[0], point[1], footprint_mm);
+    const float albedo =
+        kind.albedo({point, direction, to_next_column, to_next_row, depth, cosine, pixel});
     const float radiance = albedo * light * std::max(cosine, 0.0F) / distance_squared;
     const float value = tone(radiance) + noise[column] + 0.5F;
     out[column] = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));

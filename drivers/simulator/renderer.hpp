@@ -8,18 +8,9 @@
 
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/pose.hpp"
-#include "drivers/simulator/relief.hpp"
-#include "drivers/simulator/texture.hpp"
+#include "drivers/simulator/surface.hpp"
 
 namespace handeye::simulator {
-
-/// What is looked at: relief and albedo, in surface coordinates (mm, z towards the viewer).
-struct Surface {
-  explicit Surface(std::uint64_t seed) : relief(seed), texture(seed) {}
-
-  Relief relief;
-  Texture texture;
-};
 
 struct ImagingOptions {
   double nominal_distance_mm{80.0};  ///< where the light's brightness is set for
@@ -50,7 +41,9 @@ class Renderer {
     Eigen::Array4f origin, x_axis, y_axis, z_axis;
   };
 
-  void render_row(int row, const View& view, const float* noise, std::uint8_t* out);
+  template <typename Kind>
+  void render_row(const Kind& kind, int row, const View& view, const float* noise,
+                  std::uint8_t* out);
   float depth_of_first_pixel(int row, const View& view) const;
 
   const Surface* surface_;

@@ -34,7 +34,7 @@ nlohmann::ordered_json camera_json(const CameraModel& camera) {
 
 nlohmann::ordered_json truth_json(const World& world) {
   const SimulatorOptions& options = world.options;
-  return {
+  nlohmann::ordered_json truth{
       {"hand_from_eye", pose_json(world.hand_from_eye)},
       {"time_offset_s", world.time_offset_s()},
       {"camera", camera_json(world.camera)},
@@ -54,6 +54,11 @@ nlohmann::ordered_json truth_json(const World& world) {
       {"tracker_noise", {{"deg", options.tracker_noise_deg}, {"mm", options.tracker_noise_mm}}},
       {"room_from_surface", pose_json(world.room_from_surface)},
   };
+  if (options.board) {
+    truth["board"] = to_string(*options.board);
+    truth["room_from_board"] = pose_json(world.room_from_board().value());
+  }
+  return truth;
 }
 
 void write_truth(const std::filesystem::path& path, const World& world) {

@@ -46,6 +46,10 @@ Pose draw_room_from_surface(std::uint64_t seed) {
   return make_pose(rotation, {x_mm, y_mm, random.uniform(900.0, 1300.0)});
 }
 
+Surface surface_of(const SimulatorOptions& options) {
+  return options.board ? Surface(*options.board) : Surface(options.seed);
+}
+
 MotionOptions motion_options(MotionKind kind) {
   MotionOptions options;
   options.kind = kind;
@@ -58,8 +62,8 @@ World::World(const SimulatorOptions& chosen, std::int64_t start)
     : options(chosen),
       start_ns(start),
       camera(draw_camera(chosen)),
-      surface(chosen.seed),
-      motion(chosen.seed, {0, 0, surface.relief.height(0, 0)}, motion_options(chosen.motion)),
+      surface(surface_of(chosen)),
+      motion(chosen.seed, {0, 0, surface.height(0, 0)}, motion_options(chosen.motion)),
       room_from_surface(draw_room_from_surface(chosen.seed)),
       hand_from_eye(draw_hand_from_eye(chosen.seed)) {
   RandomStream random(chosen.seed, Purpose::kClocks);
@@ -75,6 +79,12 @@ Pose World::room_from_eye(double time_s) const {
 
 Pose World::room_from_hand(double time_s) const {
   return room_from_eye(time_s) * hand_from_eye.inverse();
+}
+
+std::optional<Pose> World::room_from_board() const {
+  const auto surface_from_board = surface.surface_from_board();
+  return surface_from_board ? std::optional<Pose>(room_from_surface * *surface_from_board)
+                            : std::nullopt;
 }
 
 double World::tracker_clock_s(double time_s) const {

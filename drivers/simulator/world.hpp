@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "daemon/geometry/board.hpp"
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/pose.hpp"
 #include "drivers/simulator/motion.hpp"
-#include "drivers/simulator/renderer.hpp"
+#include "drivers/simulator/surface.hpp"
 
 namespace handeye::simulator {
 
@@ -14,8 +16,9 @@ namespace handeye::simulator {
 struct SimulatorOptions {
   std::uint64_t seed{0};
   MotionKind motion{MotionKind::kFree};
-  int width{640};   ///< px
-  int height{480};  ///< px
+  std::optional<Board> board;  ///< what is looked at instead of tissue
+  int width{640};              ///< px
+  int height{480};             ///< px
   double camera_rate_hz{25.0};
   double tracker_rate_hz{60.0};
   double tracker_noise_deg{0.06};  ///< standard deviation per axis
@@ -27,11 +30,15 @@ struct SimulatorOptions {
 /// Everything that is true in a simulation. The host's clock counts ns; simulated time is seconds
 /// since the start.
 struct World {
-  /// Draws a world whose simulation starts at this instant of the host's clock.
+  /// Draws a world whose simulation starts at this instant of the host's clock. Throws UsageError
+  /// when the board cannot be drawn.
   World(const SimulatorOptions& options, std::int64_t start_ns);
 
   Pose room_from_eye(double time_s) const;
   Pose room_from_hand(double time_s) const;
+
+  /// Nothing where there is no board.
+  std::optional<Pose> room_from_board() const;
 
   /// The tracker's clock, seconds of its day in [0, 86400).
   double tracker_clock_s(double time_s) const;

@@ -21,7 +21,7 @@ const CameraModel kCamera{640, 480, 603, 601, 324.3, 236.1, {-0.1, 0.02, 0, 0, 0
 Pose surface_from_eye_at(const Surface& surface, MotionKind kind, double time_s) {
   MotionOptions options;
   options.kind = kind;
-  return Motion(21, {0, 0, surface.relief.height(0, 0)}, options).surface_from_eye(time_s);
+  return Motion(21, {0, 0, surface.height(0, 0)}, options).surface_from_eye(time_s);
 }
 
 /// The surface point that a pixel sees, in double precision and by the slow way.
@@ -30,7 +30,7 @@ Eigen::Vector3d surface_point(const Surface& surface, const Pose& surface_from_e
   const Eigen::Vector3d direction =
       surface_from_eye.linear() * unproject(kCamera, pixel).value().homogeneous();
   const Eigen::Vector3d origin = surface_from_eye.translation();
-  return origin + surface.relief.intersect(origin, direction, kFarMm).value() * direction;
+  return origin + surface.intersect(origin, direction, kFarMm).value() * direction;
 }
 
 TEST(Renderer, MeetsTheSurfaceWhereTheSlowWayDoes) {

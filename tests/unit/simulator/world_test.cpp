@@ -19,8 +19,8 @@ TEST(World, FramesFitTogether) {
                     .isApprox(world.room_from_eye(time_s), 1e-12));
     // The optical axis meets the surface some 80 mm ahead.
     const Pose surface_from_eye = world.room_from_surface.inverse() * world.room_from_eye(time_s);
-    const auto distance_mm = world.surface.relief.intersect(
-        surface_from_eye.translation(), surface_from_eye.linear().col(2), 1000.0);
+    const auto distance_mm = world.surface.intersect(surface_from_eye.translation(),
+                                                     surface_from_eye.linear().col(2), 1000.0);
     ASSERT_TRUE(distance_mm.has_value());
     EXPECT_GT(*distance_mm, 50.0);
     EXPECT_LT(*distance_mm, 120.0);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/simulator/command_line.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "protocol/exit_codes.hpp"
+
+namespace handeye::simulator {
+namespace {
+
+std::optional<CommandLine> parse(std::vector<std::string> words) {
+  words.insert(words.begin(), "handeye-sim");
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  return parse_command_line(static_cast<int>(pointers.size()), pointers.data());
+}
+
+TEST(CommandLine, TakesABoardForBothCommands) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", "--board", "chessboard:9x6:4"},
+        std::vector<std::string>{"record", "out", "--duration", "1", "--board",
+                                 "chessboard:9x6:4"}}) {
+    const auto line = parse(words);
+    ASSERT_TRUE(line.has_value());
+    ASSERT_TRUE(line->simulator.board.has_value());
+    EXPECT_EQ(to_string(*line->simulator.board), "chessboard:9x6:4");
+  }
+  EXPECT_FALSE(parse({"run"})->simulator.board.has_value());
+}
+
+TEST(CommandLine, SaysWhatIsWrongWithABoard) {
+  for (const char* const board : {"chessboard:9x6", "chessboard:9:4", "charuco:8x6:6:7:DICT_4X4_50",
+                                  "charuco:8x6:6:4:DICT_9X9_9", "tablecloth", ""}) {
+    try {
+      parse({"run", "--board", board});
+      ADD_FAILURE() << board;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("board"),
+                                               testing::Not(testing::HasSubstr("\n"))));
+    }
+  }
+}
+
+TEST(CommandLine, DrawsAnotherSeedWhereNoneIsGiven) {
+  EXPECT_EQ(parse({"run", "--seed", "12"})->simulator.seed, 12U);
+  EXPECT_NE(parse({"run"})->simulator.seed, parse({"run"})->simulator.seed);
+}
+
+}  // namespace
+}  // namespace handeye::simulator

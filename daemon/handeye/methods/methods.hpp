@@ -10,11 +10,26 @@
 /// indifferent to the unit of the scene.
 namespace handeye {
 
+// Known scale.
+
+/// Rotation and translation at once, by the non-linear function of Horaud and Dornaika 1995 as
+/// printed: its weights add rad^2 to mm^2, so noisy translations cost it more than other methods.
+std::optional<HandEyeSolution> horaud_nonlinear(const HandEyeProblem& problem);
+
 // Unknown scale.
 
 /// Rotation from eq 4, scale from eq 6, then rotation and translation again by Daniilidis' linear
 /// dual quaternions on the scaled eye (seed 1, section 4.1).
 std::optional<HandEyeSolution> dq_scale_separate(const HandEyeProblem& problem);
+
+/// Scale from eqs 4 and 6, then horaud_nonlinear on the scaled eye (seed 1, section 4.1).
+std::optional<HandEyeSolution> horaud_scale_separate(const HandEyeProblem& problem);
+
+/// The scale by eq 7, then rotation and translation again by the linear dual quaternions.
+std::optional<HandEyeSolution> nonlinear_quaternion(const HandEyeProblem& problem);
+
+/// The scale by eq 15, then rotation and translation again by the linear dual quaternions.
+std::optional<HandEyeSolution> nonlinear_dual_quaternion(const HandEyeProblem& problem);
 
 /// All unknowns, scale among them, as one homogeneous linear system (Andreff, Horaud, Espiau 2001).
 std::optional<HandEyeSolution> andreff(const HandEyeProblem& problem);

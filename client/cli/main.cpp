@@ -66,6 +66,7 @@ int main(int argc, char** argv) {
   add_pose_command(app, action);
   add_record_command(app, action);
   add_replay_command(app, action);
+  add_solve_command(app, action);
   add_compare_command(app, action);
   try {
     app.parse(argc, argv);

@@ -22,13 +22,18 @@ std::optional<double> parse_positive(std::string_view text) {
   return value;
 }
 
-std::optional<WantedSigma> parse_sigma(const std::string& text) {
+struct Deviations {
+  double rotation_deg{0};
+  double translation_mm{0};
+};
+
+std::optional<Deviations> parse_deviations(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) return std::nullopt;
   const auto rotation_deg = parse_positive(std::string_view(text).substr(0, comma));
   const auto translation_mm = parse_positive(std::string_view(text).substr(comma + 1));
   if (!rotation_deg || !translation_mm) return std::nullopt;
-  return WantedSigma{*rotation_deg, *translation_mm};
+  return Deviations{*rotation_deg, *translation_mm};
 }
 
 }  // namespace
@@ -57,18 +62,28 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
       ->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
-void add_sigma_option(CLI::App& command, WantedSigma& wanted, const std::string& default_text) {
-  command
-      .add_option_function<std::string>(
-          "--sigma", [&wanted](const std::string& text) { wanted = *parse_sigma(text); },
-          "accept at or below this standard deviation of rotation [deg] and translation [mm]; " +
-              default_text)
+void add_deviation_option(CLI::App& command, const std::string& name,
+                          const std::function<void(double deg, double mm)>& set,
+                          const std::string& help) {
+  const auto take = [set](const std::string& text) {
+    const Deviations deviations = *parse_deviations(text);
+    set(deviations.rotation_deg, deviations.translation_mm);
+  };
+  command.add_option_function<std::string>(name, take, help)
       ->check([](const std::string& text) {
-        return parse_sigma(text)
+        return parse_deviations(text)
                    ? std::string()
                    : "two positive numbers as in 0.3,1.5 are wanted, not '" + text + "'";
       })
       ->type_name("DEG,MM");
+}
+
+void add_sigma_option(CLI::App& command, WantedSigma& wanted, const std::string& default_text) {
+  const auto set = [&wanted](double deg, double mm) { wanted = {deg, mm}; };
+  add_deviation_option(
+      command, "--sigma", set,
+      "accept at or below this standard deviation of rotation [deg] and translation [mm]; " +
+          default_text);
 }
 
 void add_save_option(CLI::App& command, std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -25,6 +26,11 @@ void add_client_options(CLI::App& command, ClientOptions& options);
 
 /// --json and --color.
 void add_output_options(CLI::App& command, OutputOptions& options);
+
+/// NAME DEG,MM: standard deviations of rotation and translation, two positive numbers.
+void add_deviation_option(CLI::App& command, const std::string& name,
+                          const std::function<void(double deg, double mm)>& set,
+                          const std::string& help);
 
 /// --sigma DEG,MM, two positive numbers. default_text: what holds without it, for the help.
 void add_sigma_option(CLI::App& command, WantedSigma& wanted, const std::string& default_text);

@@ -12,14 +12,19 @@ namespace handeye::cli {
 
 ExitCode print_result(const CalibrationResult& result, const OutputOptions& output,
                       const std::filesystem::path& save) {
-  const nlohmann::ordered_json json = to_json(result);
+  return print_result(result.verdict, to_json(result), result_text(result, output.palette()),
+                      output, save);
+}
+
+ExitCode print_result(Verdict verdict, const nlohmann::ordered_json& json, const std::string& text,
+                      const OutputOptions& output, const std::filesystem::path& save) {
   if (output.json) {
     print_line(dump_json(json));
   } else {
-    std::fputs(result_text(result, output.palette()).c_str(), stdout);
+    std::fputs(text.c_str(), stdout);
   }
   if (!save.empty()) save_json(save, json);
-  return result.verdict == Verdict::kAccepted ? ExitCode::kOk : ExitCode::kRefused;
+  return verdict == Verdict::kAccepted ? ExitCode::kOk : ExitCode::kRefused;
 }
 
 void save_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +16,10 @@ namespace handeye::cli {
 /// the exit code of its verdict. Throws InputError when the file cannot be written.
 ExitCode print_result(const CalibrationResult& result, const OutputOptions& output,
                       const std::filesystem::path& save);
+
+/// The same for a result whose JSON and text are made already.
+ExitCode print_result(Verdict verdict, const nlohmann::ordered_json& json, const std::string& text,
+                      const OutputOptions& output, const std::filesystem::path& save);
 
 /// Writes a JSON document to a file. Throws InputError when that fails.
 void save_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);

@@ -12,12 +12,4 @@ namespace handeye::cli {
 /// rests on. Several lines, the last with its newline. A refused estimate is marked as such.
 std::string result_text(const CalibrationResult& result, const Palette& palette);
 
-/// Euler angles of R = Rz(yaw) Ry(pitch) Rx(roll) [deg]; roll 0 where pitch is +-90 deg.
-struct EulerAngles {
-  double roll_deg{0};
-  double pitch_deg{0};
-  double yaw_deg{0};
-};
-EulerAngles euler_angles(const Eigen::Matrix3d& rotation);
-
 }  // namespace handeye::cli

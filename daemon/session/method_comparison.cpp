@@ -6,19 +6,21 @@
 
 namespace handeye {
 
+MethodResult run_method(const Method& method, const HandEyeProblem& problem) {
+  const Stopwatch stopwatch;
+  MethodResult result{.name = std::string(method.name)};
+  result.solution = method.solve(problem);
+  result.time_ms = stopwatch.elapsed_ms();
+  if (result.solution) result.residuals = seed_residuals(problem.poses, *result.solution);
+  return result;
+}
+
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
                                           std::span<const PosePair> poses, const PoseNoise& noise) {
   const Selection selection = select_movements(poses);
   const HandEyeProblem problem{.poses = poses, .movements = selection.movements, .noise = noise};
   std::vector<MethodResult> results;
-  for (const Method& method : methods) {
-    const Stopwatch stopwatch;
-    MethodResult result{.name = std::string(method.name)};
-    result.solution = method.solve(problem);
-    result.time_ms = stopwatch.elapsed_ms();
-    if (result.solution) result.residuals = seed_residuals(poses, *result.solution);
-    results.push_back(std::move(result));
-  }
+  for (const Method& method : methods) results.push_back(run_method(method, problem));
   return results;
 }
 

@@ -47,11 +47,18 @@ struct WantedSigma {
   double translation_mm{1.5};
 };
 
+/// Square roots of the traces of the rotation's and the translation's block of a covariance.
+struct MethodSigma {
+  double rotation_deg{0};
+  double translation_mm{0};
+};
+
 struct MethodResult {
   std::string name;
   std::optional<HandEyeSolution> solution;  ///< nothing: the method found none
   Residuals residuals;
   double time_ms{0};
+  std::optional<MethodSigma> sigma;  ///< of its own solution; nothing: not asked for, or not known
 };
 
 /// Everything a calibration says; the fields of the result JSON and of result_t.

@@ -64,6 +64,10 @@ Json method_json(const MethodResult& method) {
       method.solution ? number(method.solution->scale_units_per_mm) : Json(nullptr);
   json["residuals"] = method.solution ? residuals_json(method.residuals) : Json(nullptr);
   json["time_ms"] = number(method.time_ms);
+  if (method.sigma) {
+    json["sigma"] = {{"rotation_deg", number(method.sigma->rotation_deg)},
+                     {"translation_mm", number(method.sigma->translation_mm)}};
+  }
   return json;
 }
 

@@ -9,26 +9,6 @@ constexpr std::size_t kFewestPoses = 10;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault.
 constexpr double kSeenEnough = 0.5;
 
-Reason reason_of(MotionProblem problem) {
-  switch (problem) {
-    case MotionProblem::kNone:
-      return Reason::kNone;
-    case MotionProblem::kNoMotion:
-      return Reason::kNoMotion;
-    case MotionProblem::kInsufficientRotation:
-      return Reason::kInsufficientRotation;
-    case MotionProblem::kNoParallax:
-      return Reason::kNoParallax;
-    case MotionProblem::kSingleAxis:
-      return Reason::kSingleAxis;
-    case MotionProblem::kFixedPoint:
-      return Reason::kFixedPoint;
-    case MotionProblem::kUncertain:
-      break;
-  }
-  return Reason::kUncertain;
-}
-
 /// Why there is nothing to solve from: the motion's fault before the images'.
 Reason reason_without_reconstruction(const Evidence& evidence) {
   const bool no_parallax = evidence.reconstruction.state == ReconstructionState::kNoParallax;
@@ -63,6 +43,26 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
 }
 
 }  // namespace
+
+Reason reason_of(MotionProblem problem) {
+  switch (problem) {
+    case MotionProblem::kNone:
+      return Reason::kNone;
+    case MotionProblem::kNoMotion:
+      return Reason::kNoMotion;
+    case MotionProblem::kInsufficientRotation:
+      return Reason::kInsufficientRotation;
+    case MotionProblem::kNoParallax:
+      return Reason::kNoParallax;
+    case MotionProblem::kSingleAxis:
+      return Reason::kSingleAxis;
+    case MotionProblem::kFixedPoint:
+      return Reason::kFixedPoint;
+    case MotionProblem::kUncertain:
+      break;
+  }
+  return Reason::kUncertain;
+}
 
 Finding conclude(const Evidence& evidence) {
   if (evidence.frames_received == 0) return {Reason::kCameraLost, {}};

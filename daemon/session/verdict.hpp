@@ -28,6 +28,9 @@ struct Finding {
   std::optional<Judgement> judgement;  ///< nothing: there was no answer to judge
 };
 
+/// What is wrong with a motion, in the result's words; kNone for kNone.
+Reason reason_of(MotionProblem problem);
+
 /// Judges, first match: nothing was seen, the motion was not enough, the images were not, the
 /// answer is not certain enough.
 Finding conclude(const Evidence& evidence);

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "client/cli/result_parts.hpp"
 #include "client/cli/result_text.hpp"
 #include "client/cli/status_text.hpp"
 #include "client/cli/stream_counter.hpp"

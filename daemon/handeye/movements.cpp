@@ -9,8 +9,16 @@ namespace handeye {
 namespace {
 
 // Only what exact data lack is refused here; what noise hides is for the judge, who knows it.
+constexpr double kRotationTolerance = 1e-6;  // of R^T R - I; poses from text files have as much
 constexpr double kMinRotation_rad = 1e-6;  // rms over the movements
 constexpr double kMinAxisSpread = 1e-6;    // second principal rotation to the first
+
+bool is_rigid(const Pose& pose) {
+  if (!pose.matrix().allFinite()) return false;
+  const Eigen::Matrix3d& rotation = pose.linear();
+  const Eigen::Matrix3d excess = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
+  return excess.cwiseAbs().maxCoeff() <= kRotationTolerance && rotation.determinant() > 0;
+}
 
 bool rotates_about_two_axes(std::span<const Movement> movements) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -38,12 +46,13 @@ HandEyeSolution NormalisedMovements::restore(const Pose& eye_from_hand,
   return {in_mm.inverse(), normalised_scale * eye_units / hand_mm};
 }
 
-std::optional<NormalisedMovements> normalise(std::span<const Movement> movements) {
+std::optional<NormalisedMovements> normalise(std::span<const Movement> movements,
+                                             ScaleMode scale) {
   if (movements.size() < 2) return std::nullopt;
   double hand_squares = 0;
   double eye_squares = 0;
   for (const auto& [hand, eye] : movements) {
-    if (!hand.matrix().allFinite() || !eye.matrix().allFinite()) return std::nullopt;
+    if (!is_rigid(hand) || !is_rigid(eye)) return std::nullopt;
     hand_squares += hand.translation().squaredNorm();
     eye_squares += eye.translation().squaredNorm();
   }
@@ -52,6 +61,11 @@ std::optional<NormalisedMovements> normalise(std::span<const Movement> movements
   NormalisedMovements result{{movements.begin(), movements.end()},
                              std::sqrt(hand_squares / n),
                              std::sqrt(eye_squares / n)};
+  if (scale == ScaleMode::kKnown) {
+    // Both may turn about their own origins: then any unit will do.
+    const double unit = std::sqrt(0.5 * (hand_squares + eye_squares) / n);
+    result.hand_mm = result.eye_units = unit > 0 ? unit : 1.0;
+  }
   if (!std::isnormal(result.hand_mm) || !std::isnormal(result.eye_units)) return std::nullopt;
   for (auto& [hand, eye] : result.movements) {
     hand.translation() /= result.hand_mm;

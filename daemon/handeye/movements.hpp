@@ -9,8 +9,9 @@
 
 namespace handeye {
 
-/// Movements in units in which both sides' translations have rms 1, so that no solver depends on
-/// the units of the scene (math.md section 2).
+/// Movements in units in which translations are about 1, so that no solver depends on the caller's
+/// units (math.md section 2): with unknown scale each side has rms 1 of its own, with known scale
+/// one unit serves both.
 struct NormalisedMovements {
   std::vector<Movement> movements;
   double hand_mm{1};    ///< one normalised unit of the hand
@@ -21,8 +22,10 @@ struct NormalisedMovements {
   HandEyeSolution restore(const Pose& eye_from_hand, double normalised_scale) const;
 };
 
-/// Nothing when the movements cannot determine hand-eye and scale whatever the method: fewer than
-/// two, numbers that are not finite, no rotation, all axes parallel, or one side never translates.
-std::optional<NormalisedMovements> normalise(std::span<const Movement> movements);
+/// Nothing when the movements cannot determine hand-eye whatever the method: fewer than two, numbers
+/// that are not finite, matrices that are not rotations, no rotation, all axes parallel, or, with
+/// unknown scale, one side that never translates.
+std::optional<NormalisedMovements> normalise(std::span<const Movement> movements,
+                                             ScaleMode scale = ScaleMode::kUnknown);
 
 }  // namespace handeye

@@ -17,13 +17,8 @@ constexpr double kMinConditioning = 1e-9;  // second smallest singular value to 
 Eigen::Matrix<double, 12, 13> rows_of(const Movement& movement) {
   const auto& [hand, eye] = movement;
   Eigen::Matrix<double, 12, 13> rows = Eigen::Matrix<double, 12, 13>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      rows.block<3, 3>(3 * i, 3 * j).diagonal().array() += eye.linear()(i, j);
-    }
-    rows.block<3, 3>(3 * i, 3 * i) -= hand.linear().transpose();
-    rows.block<1, 3>(9 + i, 3 * i) = hand.translation().transpose();
-  }
+  rows.topLeftCorner<9, 9>() = entry_rows(movement);
+  for (int i = 0; i < 3; ++i) rows.block<1, 3>(9 + i, 3 * i) = hand.translation().transpose();
   rows.block<3, 3>(9, 9) = Eigen::Matrix3d::Identity() - eye.linear();
   rows.block<3, 1>(9, 12) = -eye.translation();
   return rows;

@@ -6,8 +6,17 @@
 namespace handeye {
 namespace {
 
-constexpr std::array<Method, 1> kKnownScale{{
+constexpr std::array<Method, 10> kKnownScale{{
+    {"tsai_lenz", tsai_lenz, "Tsai, Lenz 1989, eqs 12 and 15"},
+    {"shiu_ahmad", shiu_ahmad, "Shiu, Ahmad 1989"},
+    {"chou_kamel", chou_kamel, "Chou, Kamel 1991"},
+    {"chen", chen, "Chen 1991"},
+    {"park_martin", park_martin, "Park, Martin 1994, eq 19"},
+    {"horaud_closed_form", horaud_closed_form, "Horaud, Dornaika 1995, closed form"},
     {"horaud_nonlinear", horaud_nonlinear, "Horaud, Dornaika 1995, non-linear"},
+    {"daniilidis", daniilidis, "Daniilidis 1999, eqs 31 to 36"},
+    {"andreff", andreff_known_scale, "Andreff, Horaud, Espiau 1999 and 2001"},
+    {"maximum_likelihood", maximum_likelihood_known_scale, "ours: over poses, weighted by noise"},
 }};
 
 constexpr std::array<Method, 6> kUnknownScale{{

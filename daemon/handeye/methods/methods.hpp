@@ -10,11 +10,36 @@
 /// indifferent to the unit of the scene.
 namespace handeye {
 
-// Known scale.
+// Known scale: most find the rotation first, each in its own way, then the translation.
+
+/// Linear in the Gibbs vector of R_X (Tsai, Lenz 1989).
+std::optional<HandEyeSolution> tsai_lenz(const HandEyeProblem& problem);
+
+/// Each movement leaves a turn about its axis; all must agree on the rest (Shiu, Ahmad 1989).
+std::optional<HandEyeSolution> shiu_ahmad(const HandEyeProblem& problem);
+
+/// Null vector of the quaternion equations (Chou, Kamel 1991).
+std::optional<HandEyeSolution> chou_kamel(const HandEyeProblem& problem);
+
+/// Lines of the screws laid on each other (Chen 1991).
+std::optional<HandEyeSolution> chen(const HandEyeProblem& problem);
+
+/// Rotation vectors laid on each other (Park, Martin 1994).
+std::optional<HandEyeSolution> park_martin(const HandEyeProblem& problem);
+
+/// Quaternion eigenproblem (Horaud, Dornaika 1995).
+std::optional<HandEyeSolution> horaud_closed_form(const HandEyeProblem& problem);
 
 /// Rotation and translation at once, by the non-linear function of Horaud and Dornaika 1995 as
 /// printed: its weights add rad^2 to mm^2, so noisy translations cost it more than other methods.
 std::optional<HandEyeSolution> horaud_nonlinear(const HandEyeProblem& problem);
+
+/// Rotation and translation at once by linear dual quaternions (Daniilidis 1999).
+std::optional<HandEyeSolution> daniilidis(const HandEyeProblem& problem);
+
+/// Linear in the nine entries of R_X and in t_X; `andreff` of the known-scale table (Andreff,
+/// Horaud, Espiau 1999).
+std::optional<HandEyeSolution> andreff_known_scale(const HandEyeProblem& problem);
 
 // Unknown scale.
 
@@ -37,6 +62,7 @@ std::optional<HandEyeSolution> andreff(const HandEyeProblem& problem);
 // Both.
 
 /// Over poses, weighted by their noise (math.md section 4): the answer.
+std::optional<HandEyeSolution> maximum_likelihood_known_scale(const HandEyeProblem& problem);
 std::optional<HandEyeSolution> maximum_likelihood_unknown_scale(const HandEyeProblem& problem);
 
 }  // namespace handeye

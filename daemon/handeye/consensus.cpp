@@ -2,7 +2,8 @@
 #include "daemon/handeye/consensus.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "daemon/handeye/pairing.hpp"
 
 namespace handeye {
 namespace {
@@ -27,39 +28,14 @@ std::vector<std::size_t> finite_poses(std::span<const PosePair> poses) {
   return finite;
 }
 
-/// How far apart compared poses are: one step from each stratum of 1..n/2, irregular within it lest
-/// a periodic motion always meets itself.
-std::vector<std::size_t> steps(std::size_t n, std::size_t partners) {
-  const std::size_t half = n / 2;
-  const std::size_t wanted = std::min(half, std::max<std::size_t>(1, partners / 2));
-  constexpr double kGoldenRatio = 0.6180339887498949;
-  std::vector<std::size_t> result;
-  for (std::size_t m = 0; m < wanted; ++m) {
-    const double within = std::fmod(static_cast<double>(m + 1) * kGoldenRatio, 1.0);
-    const double stratum = static_cast<double>(half) / static_cast<double>(wanted);
-    result.push_back(1 + static_cast<std::size_t>(stratum * (static_cast<double>(m) + within)));
-    result.back() = std::min(result.back(), half);
-  }
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
-
-/// Pose k with those `step` further on, round the sequence's end; each pair once.
 std::vector<Ballot> ballots(std::span<const PosePair> poses, const std::vector<std::size_t>& finite,
                             const ConsensusOptions& options) {
-  const std::size_t n = finite.size();
   const double min_angle_rad = rad_from_deg(options.min_angle_deg);
   std::vector<Ballot> result;
-  for (const std::size_t step : steps(n, options.partners)) {
-    const std::size_t starts = 2 * step == n ? step : n;
-    for (std::size_t k = 0; k < starts; ++k) {
-      const std::size_t other = (k + step) % n;
-      const std::size_t i = finite[std::min(k, other)];
-      const std::size_t j = finite[std::max(k, other)];
-      const ScrewPair screw = screw_pair(movement_between(poses[i], poses[j]));
-      if (std::max(screw.hand_angle_rad, screw.eye_angle_rad) < min_angle_rad) continue;
-      result.push_back({i, j, screw});
-    }
+  for (const auto& [a, b] : spread_pairs(finite.size(), options.partners)) {
+    const ScrewPair screw = screw_pair(movement_between(poses[finite[a]], poses[finite[b]]));
+    if (std::max(screw.hand_angle_rad, screw.eye_angle_rad) < min_angle_rad) continue;
+    result.push_back({finite[a], finite[b], screw});
   }
   return result;
 }

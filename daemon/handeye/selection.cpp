@@ -2,10 +2,13 @@
 #include "daemon/handeye/selection.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 #include "daemon/handeye/consensus.hpp"
+#include "daemon/handeye/pairing.hpp"
+#include "daemon/handeye/vector_quantisation.hpp"
 
 namespace handeye {
 namespace {
@@ -13,31 +16,9 @@ namespace {
 struct Candidate {
   std::size_t i{0};
   std::size_t j{0};
-  double angle_rad{0};       ///< of the hand
-  std::size_t direction{0};  ///< of the axis
+  double angle_rad{0};                            ///< of the hand
+  Eigen::Vector3d turn{Eigen::Vector3d::Zero()};  ///< rotation vector of the hand
 };
-
-/// Thirteen axes: along the edges, face diagonals and space diagonals of a cube.
-std::vector<Eigen::Vector3d> axis_directions() {
-  std::vector<Eigen::Vector3d> directions;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (x * 9 + y * 3 + z > 0) directions.push_back(Eigen::Vector3d(x, y, z).normalized());
-      }
-    }
-  }
-  return directions;
-}
-
-std::size_t nearest_direction(const std::vector<Eigen::Vector3d>& directions,
-                              const Eigen::Vector3d& axis) {
-  const auto nearer = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return std::abs(a.dot(axis)) < std::abs(b.dot(axis));
-  };
-  const auto best = std::max_element(directions.begin(), directions.end(), nearer);
-  return static_cast<std::size_t>(best - directions.begin());
-}
 
 /// Indices of the poses that are looked at.
 std::vector<std::size_t> thinned(std::size_t poses, std::size_t max_poses) {
@@ -47,25 +28,22 @@ std::vector<std::size_t> thinned(std::size_t poses, std::size_t max_poses) {
   return kept;
 }
 
-/// All movements between right poses that hand and eye see alike.
-std::vector<Candidate> all_pairs(std::span<const PosePair> poses,
-                                 const std::vector<std::size_t>& right,
-                                 const ScrewAgreement& agreement, const SelectionOptions& options) {
-  const std::vector<Eigen::Vector3d> directions = axis_directions();
+/// Movements between right poses that hand and eye see alike.
+std::vector<Candidate> agreeing_pairs(std::span<const PosePair> poses,
+                                      const std::vector<std::size_t>& right,
+                                      const ScrewAgreement& agreement,
+                                      const SelectionOptions& options) {
   const double min_angle_rad = rad_from_deg(options.lowest_min_angle_deg);
+  const std::size_t partners = 2 * options.max_candidates / std::max<std::size_t>(right.size(), 1);
   std::vector<Candidate> candidates;
-  for (const std::size_t i : right) {
-    for (const std::size_t j : right) {
-      if (j <= i) continue;
-      const Movement movement = movement_between(poses[i], poses[j]);
-      const ScrewPair screw = screw_pair(movement);
-      if (screw.hand_angle_rad < min_angle_rad || !agreement.agrees(screw, options.tolerance)) {
-        continue;
-      }
-      candidates.push_back(
-          {i, j, screw.hand_angle_rad,
-           nearest_direction(directions, log_so3(movement.hand_j_from_hand_i.linear()))});
+  for (const auto& [a, b] : spread_pairs(right.size(), partners)) {
+    const Movement movement = movement_between(poses[right[a]], poses[right[b]]);
+    const ScrewPair screw = screw_pair(movement);
+    if (screw.hand_angle_rad < min_angle_rad || !agreement.agrees(screw, options.tolerance)) {
+      continue;
     }
+    candidates.push_back(
+        {right[a], right[b], screw.hand_angle_rad, log_so3(movement.hand_j_from_hand_i.linear())});
   }
   return candidates;
 }
@@ -91,33 +69,39 @@ std::vector<Candidate> in_window(const std::vector<Candidate>& candidates,
   return kept.size() >= 2 ? kept : between(min_angle_deg, 180.0);
 }
 
-/// Direction by direction in turn, each the largest angle left whose poses are not yet worn out.
-std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::size_t poses,
-                              std::size_t right, std::size_t max_movements) {
-  std::array<std::vector<Candidate>, 13> bins;
-  for (const Candidate& c : candidates) bins[c.direction].push_back(c);
-  for (auto& bin : bins) {
-    std::stable_sort(bin.begin(), bin.end(), [](const Candidate& a, const Candidate& b) {
-      return a.angle_rad > b.angle_rad;
-    });
+/// Rotation vectors of one half-space, about whose axis they turn most: -w is the same movement
+/// reversed.
+std::vector<Eigen::Vector3d> folded_turns(const std::vector<Candidate>& candidates) {
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Candidate& c : candidates) scatter += c.turn * c.turn.transpose();
+  const Eigen::Vector3d main_axis =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  std::vector<Eigen::Vector3d> turns;
+  turns.reserve(candidates.size());
+  for (const Candidate& c : candidates) {
+    turns.push_back(c.turn.dot(main_axis) < 0 ? Eigen::Vector3d(-c.turn) : c.turn);
   }
-  const std::size_t max_uses = 1 + 4 * max_movements / std::max<std::size_t>(right, 1);
+  return turns;
+}
+
+/// One movement of each cell of rotation vectors: between the poses least used so far, of those the
+/// nearest to the cell's centre.
+std::vector<Candidate> representatives(const std::vector<Candidate>& candidates, std::size_t poses,
+                                       std::size_t max_movements) {
+  const std::vector<Eigen::Vector3d> turns = folded_turns(candidates);
   std::vector<std::size_t> uses(poses, 0);
-  std::array<std::size_t, 13> next{};
   std::vector<Candidate> chosen;
-  for (bool any = true; any && chosen.size() < max_movements;) {
-    any = false;
-    for (std::size_t b = 0; b < bins.size() && chosen.size() < max_movements; ++b) {
-      while (next[b] < bins[b].size()) {
-        const Candidate& c = bins[b][next[b]++];
-        if (uses[c.i] >= max_uses || uses[c.j] >= max_uses) continue;
-        ++uses[c.i];
-        ++uses[c.j];
-        chosen.push_back(c);
-        any = true;
-        break;
-      }
-    }
+  for (const Cell& cell : quantise(turns, max_movements)) {
+    const auto better = [&](std::size_t a, std::size_t b) {
+      const std::size_t uses_a = uses[candidates[a].i] + uses[candidates[a].j];
+      const std::size_t uses_b = uses[candidates[b].i] + uses[candidates[b].j];
+      if (uses_a != uses_b) return uses_a < uses_b;
+      return (turns[a] - cell.centre).squaredNorm() < (turns[b] - cell.centre).squaredNorm();
+    };
+    const std::size_t best = *std::min_element(cell.members.begin(), cell.members.end(), better);
+    ++uses[candidates[best].i];
+    ++uses[candidates[best].j];
+    chosen.push_back(candidates[best]);
   }
   return chosen;
 }
@@ -135,9 +119,9 @@ Selection select_movements(std::span<const PosePair> poses, const SelectionOptio
   std::erase_if(kept, [&](std::size_t i) {
     return std::binary_search(selection.wrong_poses.begin(), selection.wrong_poses.end(), i);
   });
-  const std::vector<Candidate> candidates = all_pairs(poses, kept, consensus.agreement, options);
-  for (const Candidate& c :
-       spread(in_window(candidates, options), poses.size(), kept.size(), options.max_movements)) {
+  const std::vector<Candidate> candidates =
+      in_window(agreeing_pairs(poses, kept, consensus.agreement, options), options);
+  for (const Candidate& c : representatives(candidates, poses.size(), options.max_movements)) {
     selection.movements.push_back(movement_between(poses[c.i], poses[c.j]));
     selection.pairs.push_back({c.i, c.j});
   }

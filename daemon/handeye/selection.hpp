@@ -12,7 +12,8 @@ namespace handeye {
 
 struct SelectionOptions {
   ScaleMode scale{ScaleMode::kUnknown};
-  std::size_t max_poses{200};  ///< longer sequences are thinned evenly
+  std::size_t max_poses{200};        ///< longer sequences are thinned evenly
+  std::size_t max_candidates{4000};  ///< movements that are looked at
   std::size_t max_movements{500};
   std::size_t enough{50};  ///< below so many the smallest angle is halved
   double min_angle_deg{15};
@@ -28,9 +29,11 @@ struct Selection {
   std::vector<std::size_t> wrong_poses;  ///< found among those looked at, and left out; ascending
 };
 
-/// Movements between pairs (i, j) of the whole sequence rather than neighbours (Schmidt, Vogt,
-/// Niemann 2004): large angles, axes spread, poses used evenly, their number bounded; hand and eye
-/// must turn by the same angle. Deterministic. Pairs that are not finite are left out.
+/// Movements between pairs (i, j) of the whole sequence rather than neighbours, with large angles,
+/// one of each cell of the rotation vectors' vector quantisation (Schmidt, Vogt, Niemann 2004). Of
+/// a cell it is the one whose poses are used least and that is nearest to the cell's centre: pairs
+/// of the same pose share its error. Wrong poses are left out, and movements that hand and eye see
+/// differently. Deterministic, and of bounded cost but for the thinning.
 Selection select_movements(std::span<const PosePair> poses, const SelectionOptions& options = {});
 
 }  // namespace handeye

@@ -20,6 +20,11 @@ _handeye_options_of() {
   "$@" --help 2>/dev/null | grep -oE -- '(^|[ ,])--[a-z][a-z-]*' | tr -d ' ,' | sort -u
 }
 
+# The methods that the program itself lists.
+_handeye_methods() {
+  "${COMP_WORDS[0]}" solve --list-methods 2>/dev/null | sed -n '2,$s/ .*//p' | sort -u
+}
+
 # Completes the value of an option; false when the option takes none that could be completed.
 _handeye_value() {
   local option=$1 current=$2
@@ -30,15 +35,17 @@ _handeye_value() {
     --camera | --config | --intrinsics) _handeye_files "$current" ;;
     --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
     --motion) _handeye_words 'free translation rotation single-axis pivot static' "$current" ;;
+    --scale) _handeye_words 'known unknown' "$current" ;;
+    --method) _handeye_words "all $(_handeye_methods)" "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
-    --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-*) COMPREPLY=() ;;
+    --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
     *) return 1 ;;
   esac
 }
 
 _handeye() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands='calibrate status watch cancel pose record replay compare'
+  local commands='calibrate status watch cancel pose record replay solve compare'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
     _handeye_words "$commands --help --version" "$current"
@@ -52,6 +59,7 @@ _handeye() {
   fi
   case $command in
     replay) _handeye_files "$current" '*.lcm' ;;
+    solve) _handeye_files "$current" '*.csv' ;;
     record) _handeye_files "$current" ;;
     compare) _handeye_files "$current" '*.json' ;;
   esac

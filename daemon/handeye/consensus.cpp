@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "daemon/handeye/explained.hpp"
 #include "daemon/handeye/pairing.hpp"
 
 namespace handeye {
@@ -76,31 +77,56 @@ std::vector<bool> vote(const std::vector<Ballot>& ballots, const std::vector<boo
   return now_right;
 }
 
+std::size_t count_of(const std::vector<bool>& flags) {
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), true));
+}
+
+/// By vote of the movements, whatever X is. Nothing when there is no majority.
+std::optional<std::vector<bool>> elected(const std::vector<Ballot>& all, std::vector<bool> right,
+                                         ScrewAgreement agreement,
+                                         const ConsensusOptions& options) {
+  const std::vector<bool> allowed = right;
+  for (int round = 0; round < options.rounds; ++round) {
+    right = vote(all, right, agreement, options);
+    for (std::size_t i = 0; i < right.size(); ++i) right[i] = right[i] && allowed[i];
+    if (2 * count_of(right) < count_of(allowed)) return std::nullopt;
+    // The wrong ones are gone: what is left is right, and tells the noise better.
+    agreement = agreement_among(all, right, options.scale, 0.5).value_or(agreement);
+  }
+  return right;
+}
+
+/// By what a solution from those elected explains.
+std::vector<bool> confirmed(std::span<const PosePair> poses, std::vector<bool> right,
+                            const std::vector<bool>& allowed, const ConsensusOptions& options) {
+  for (int round = 0; round < options.rounds; ++round) {
+    auto now = explained_poses(poses, right, options.scale, options.pose_tolerance);
+    if (!now) break;
+    for (std::size_t i = 0; i < right.size(); ++i) (*now)[i] = (*now)[i] && allowed[i];
+    if (2 * count_of(*now) < count_of(allowed) || *now == right) break;
+    right = std::move(*now);
+  }
+  return right;
+}
+
 }  // namespace
 
 Consensus find_consensus(std::span<const PosePair> poses, const ConsensusOptions& options) {
   const std::vector<std::size_t> finite = finite_poses(poses);
-  std::vector<bool> is_finite(poses.size(), false);
-  for (const std::size_t i : finite) is_finite[i] = true;
+  std::vector<bool> allowed(poses.size(), false);
+  for (const std::size_t i : finite) allowed[i] = true;
 
   const std::vector<Ballot> all = ballots(poses, finite, options);
-  const auto first = agreement_among(all, is_finite, options.scale, options.certainly_right)
-                         .value_or(ScrewAgreement{});
-  std::vector<bool> right = is_finite;
-  Consensus consensus{{}, first};
-  for (int round = 0; round < options.rounds && finite.size() >= kMinPoses; ++round) {
-    right = vote(all, right, consensus.agreement, options);
-    for (std::size_t i = 0; i < right.size(); ++i) right[i] = right[i] && is_finite[i];
-    const auto left = static_cast<std::size_t>(std::count(right.begin(), right.end(), true));
-    if (2 * left < finite.size()) {
-      right = is_finite;
-      consensus.agreement = first;
-      break;
+  std::vector<bool> right = allowed;
+  auto agreement = agreement_among(all, right, options.scale, options.certainly_right);
+  if (agreement && finite.size() >= kMinPoses) {
+    if (const auto majority = elected(all, right, *agreement, options)) {
+      right = confirmed(poses, *majority, allowed, options);
+      agreement = agreement_among(all, right, options.scale, 0.5);
     }
-    // The wrong ones are gone: what is left is right, and tells the noise better.
-    consensus.agreement =
-        agreement_among(all, right, options.scale, 0.5).value_or(consensus.agreement);
   }
+  Consensus consensus;
+  consensus.agreement = agreement.value_or(ScrewAgreement{});
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!right[i]) consensus.wrong.push_back(i);
   }

@@ -20,11 +20,11 @@ struct Candidate {
   Eigen::Vector3d turn{Eigen::Vector3d::Zero()};  ///< rotation vector of the hand
 };
 
-/// Indices of the poses that are looked at.
+/// Indices of the poses that are looked at, evenly over all.
 std::vector<std::size_t> thinned(std::size_t poses, std::size_t max_poses) {
+  const std::size_t wanted = std::min(poses, max_poses);
   std::vector<std::size_t> kept;
-  const std::size_t step = std::max<std::size_t>(1, (poses + max_poses - 1) / max_poses);
-  for (std::size_t i = 0; i < poses; i += step) kept.push_back(i);
+  for (std::size_t k = 0; k < wanted; ++k) kept.push_back(k * poses / wanted);
   return kept;
 }
 

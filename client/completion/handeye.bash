@@ -38,7 +38,7 @@ _handeye_value() {
     --scale) _handeye_words 'known unknown' "$current" ;;
     --method) _handeye_words "all $(_handeye_methods)" "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
-    --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
+    --amplitude | --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
     *) return 1 ;;
   esac
 }

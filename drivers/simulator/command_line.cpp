@@ -18,6 +18,8 @@ namespace {
 /// What CLI11 fills in and parse_command_line then understands.
 struct RawOptions {
   std::string motion{"free"};
+  std::vector<double> amplitude_deg_mm{SimulatorOptions{}.largest_turn_deg,
+                                       SimulatorOptions{}.largest_shift_mm};
   std::optional<std::string> board;
   std::vector<double> noise_deg_mm{SimulatorOptions{}.tracker_noise_deg,
                                    SimulatorOptions{}.tracker_noise_mm};
@@ -25,10 +27,18 @@ struct RawOptions {
   std::string truth_out;
 };
 
-void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
+void add_scene_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
   command.add_option("--seed", options.seed, "Draws everything; default: random, printed");
   command.add_option("--motion", raw.motion, "How the scope is moved")
       ->check(CLI::IsMember({"free", "translation", "rotation", "single-axis", "pivot", "static"}))
+      ->capture_default_str();
+  command
+      .add_option("--amplitude", raw.amplitude_deg_mm,
+                  "Largest turn about and shift along each axis: DEG,MM (a pivot's tilt is fixed)")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(0.0, 25.0))
+      ->type_name("DEG,MM")
       ->capture_default_str();
   command
       .add_option(
@@ -37,6 +47,9 @@ void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOpti
           "(inner corners) or charuco:COLSxROWS:SQUARE_MM:MARKER_MM:DICTIONARY (squares). "
           "At 640x480, chessboard:9x6:4 and charuco:8x6:6:4.5:DICT_4X4_50 stay mostly in view")
       ->type_name("BOARD");
+}
+
+void add_device_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
   command.add_option("--rate", options.camera_rate_hz, "Frames a second")
       ->check(CLI::Range(1.0, 240.0))
       ->capture_default_str();
@@ -66,6 +79,11 @@ void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOpti
   command.add_option("--camera-out", raw.camera_out, "Writes the intrinsics (camera.json)")
       ->type_name("FILE");
   command.add_option("--truth-out", raw.truth_out, "Writes the truth (JSON)")->type_name("FILE");
+}
+
+void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
+  add_scene_options(command, options, raw);
+  add_device_options(command, options, raw);
 }
 
 CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
@@ -106,6 +124,8 @@ Board board_from(const std::string& text) {
 /// The checks and conversions that go beyond a single option.
 void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   line.simulator.motion = motion_from_name(raw.motion).value();
+  line.simulator.largest_turn_deg = raw.amplitude_deg_mm.at(0);
+  line.simulator.largest_shift_mm = raw.amplitude_deg_mm.at(1);
   if (raw.board) line.simulator.board = board_from(*raw.board);
   line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
   line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);

@@ -40,6 +40,7 @@ nlohmann::ordered_json truth_json(const World& world) {
       {"camera", camera_json(world.camera)},
       {"seed", options.seed},
       {"motion", motion_name(options.motion)},
+      {"amplitude", {{"deg", options.largest_turn_deg}, {"mm", options.largest_shift_mm}}},
       {"body_id", options.body_id},
       {"start_ns", world.start_ns},
       {"camera_rate_hz", options.camera_rate_hz},

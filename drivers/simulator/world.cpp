@@ -50,10 +50,10 @@ Surface surface_of(const SimulatorOptions& options) {
   return options.board ? Surface(*options.board) : Surface(options.seed);
 }
 
-MotionOptions motion_options(MotionKind kind) {
-  MotionOptions options;
-  options.kind = kind;
-  return options;
+MotionOptions motion_options(const SimulatorOptions& options) {
+  return {.kind = options.motion,
+          .rotation_deg = options.largest_turn_deg,
+          .shift_mm = options.largest_shift_mm};
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ World::World(const SimulatorOptions& chosen, std::int64_t start)
       start_ns(start),
       camera(draw_camera(chosen)),
       surface(surface_of(chosen)),
-      motion(chosen.seed, {0, 0, surface.height(0, 0)}, motion_options(chosen.motion)),
+      motion(chosen.seed, {0, 0, surface.height(0, 0)}, motion_options(chosen)),
       room_from_surface(draw_room_from_surface(chosen.seed)),
       hand_from_eye(draw_hand_from_eye(chosen.seed)) {
   RandomStream random(chosen.seed, Purpose::kClocks);

@@ -16,9 +16,11 @@ namespace handeye::simulator {
 struct SimulatorOptions {
   std::uint64_t seed{0};
   MotionKind motion{MotionKind::kFree};
-  std::optional<Board> board;  ///< what is looked at instead of tissue
-  int width{640};              ///< px
-  int height{480};             ///< px
+  double largest_turn_deg{20.0};  ///< about each axis
+  double largest_shift_mm{15.0};  ///< along each axis
+  std::optional<Board> board;     ///< what is looked at instead of tissue
+  int width{640};                 ///< px
+  int height{480};                ///< px
   double camera_rate_hz{25.0};
   double tracker_rate_hz{60.0};
   double tracker_noise_deg{0.06};  ///< standard deviation per axis

@@ -45,6 +45,14 @@ TEST(CommandLine, SaysWhatIsWrongWithABoard) {
   }
 }
 
+TEST(CommandLine, TakesHowFarTheScopeMoves) {
+  const auto line = parse({"run", "--amplitude", "4.5,10"});
+  EXPECT_EQ(line->simulator.largest_turn_deg, 4.5);
+  EXPECT_EQ(line->simulator.largest_shift_mm, 10.0);
+  EXPECT_THROW(parse({"run", "--amplitude", "40,10"}), UsageError);
+  EXPECT_THROW(parse({"run", "--amplitude", "4.5"}), UsageError);
+}
+
 TEST(CommandLine, DrawsAnotherSeedWhereNoneIsGiven) {
   EXPECT_EQ(parse({"run", "--seed", "12"})->simulator.seed, 12U);
   EXPECT_NE(parse({"run"})->simulator.seed, parse({"run"})->simulator.seed);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/simulator/world.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "drivers/simulator/truth_file.hpp"
@@ -61,6 +63,23 @@ TEST(World, MotionAndLensDoNotDependOnRatesAndNoise) {
   options.seed = 13;
   const World third(options, 0);
   EXPECT_FALSE(world.hand_from_eye.isApprox(third.hand_from_eye, 1e-3));
+}
+
+TEST(World, TurnsNoFurtherThanChosen) {
+  SimulatorOptions options;
+  options.seed = 12;
+  options.largest_turn_deg = 4;
+  options.largest_shift_mm = 0;
+  const World world(options, kStartNs);
+  const Eigen::Matrix3d straight_down = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  double largest_deg = 0;
+  for (int tenth = 0; tenth < 300; ++tenth) {
+    const Eigen::Matrix3d now = world.motion.surface_from_eye(0.1 * tenth).linear();
+    const Eigen::Vector3d turn_rad = log_so3(straight_down.transpose() * now);
+    largest_deg = std::max(largest_deg, deg_from_rad(turn_rad.cwiseAbs().maxCoeff()));
+  }
+  EXPECT_LE(largest_deg, 4.0 + 1e-9);
+  EXPECT_GT(largest_deg, 3.8);
 }
 
 TEST(World, TrackerClockDriftsAndFallsBackAtMidnight) {

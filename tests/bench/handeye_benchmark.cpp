@@ -54,19 +54,19 @@ std::vector<PosePair> sequence(ScaleMode scale, int images) {
 
 void select(benchmark::State& state, int images) {
   const auto poses = sequence(ScaleMode::kUnknown, images);
-  for (auto _ : state) benchmark::DoNotOptimize(handeye::select_movements(poses));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(handeye::select_movements(poses));
 }
 
 void residuals(benchmark::State& state, int images) {
   const auto poses = sequence(ScaleMode::kUnknown, images);
   const auto solution = handeye::synthetic::scope(0.02).solution;
-  for (auto _ : state) benchmark::DoNotOptimize(handeye::seed_residuals(poses, solution));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(handeye::seed_residuals(poses, solution));
 }
 
 /// From the poses to the answer.
 void select_and_solve(benchmark::State& state, ScaleMode scale, const Method& method, int images) {
   const auto poses = sequence(scale, images);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const auto selection = handeye::select_movements(poses);
     const auto solution = method.solve({.poses = poses, .movements = selection.movements});
     if (!solution) {
@@ -85,7 +85,7 @@ void solve(benchmark::State& state, ScaleMode scale, const Method& method, int i
   const auto poses = sequence(scale, images);
   const auto selection = handeye::select_movements(poses);
   const HandEyeProblem problem{.poses = poses, .movements = selection.movements};
-  for (auto _ : state) benchmark::DoNotOptimize(method.solve(problem));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(method.solve(problem));
   state.SetLabel(fmt::format("{} movements", selection.movements.size()));
 }
 

@@ -74,7 +74,7 @@ bool minimise_constrained(const Triangle& folded, Eigen::Vector4d& q, Eigen::Vec
           new ConstrainedResidual{folded}),
       nullptr, q.data(), t.data(), &s);
   problem.SetManifold(q.data(), new ceres::QuaternionManifold);
-  return minimise_to_the_last_digit(problem) && s > 0;
+  return minimise_to_the_last_digit(problem);
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ std::optional<SimilarityDualQuaternion> DualQuaternionObjective::minimise(
     found = SimilarityDualQuaternion::from(quaternion_of(q), t, s);
   }
   const bool finite = found.real.coeffs().allFinite() && found.dual.coeffs().allFinite();
-  if (!finite || !(found.s() > 0)) return std::nullopt;
+  if (!finite || !(found.s() > kCollapsedScale * start.s())) return std::nullopt;
   return found;
 }
 

@@ -14,6 +14,10 @@ namespace handeye {
 /// Weight of the paper's constraints (seed 1, eqs 7 and 15; Horaud and Dornaika 1995).
 inline constexpr double kConstraintWeight = 2e6;
 
+/// Below this part of the start a scale has collapsed. Where a fixed point hides the scale
+/// (math.md section 10) the functions may fall for ever towards s = 0 and have no minimum.
+inline constexpr double kCollapsedScale = 1e-6;
+
 /// The n x n triangle with |triangle z| = |rows z| for every z. By QR, not by rows^T rows, which
 /// would halve the digits.
 template <int n>
@@ -36,7 +40,6 @@ inline bool minimise_to_the_last_digit(ceres::Problem& problem) {
   options.function_tolerance = 1e-16;
   options.gradient_tolerance = 1e-20;
   options.parameter_tolerance = 1e-16;
-  options.initial_trust_region_radius = 1e10;  // the start is good: nearly Gauss-Newton
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

@@ -19,7 +19,7 @@ constexpr int kResiduals = 4 + 13 + 1;
 Eigen::Matrix<double, 3, 13> translation_rows(const Movement& movement) {
   const auto& [hand, eye] = movement;
   Eigen::Matrix<double, 3, 13> rows = Eigen::Matrix<double, 3, 13>::Zero();
-  for (int i = 0; i < 3; ++i) rows.block<1, 3>(i, 3 * i) = hand.translation().transpose();
+  for (Eigen::Index i = 0; i < 3; ++i) rows.block<1, 3>(i, 3 * i) = hand.translation().transpose();
   rows.block<3, 3>(0, 9) = Eigen::Matrix3d::Identity() - eye.linear();
   rows.col(12) = -eye.translation();
   return rows;
@@ -86,7 +86,8 @@ std::optional<QuaternionUnknowns> QuaternionObjective::minimise(
   }
   if (!minimise_to_the_last_digit(problem)) return std::nullopt;
   const QuaternionUnknowns found{{q[0], q[1], q[2], q[3]}, t, s};
-  if (!found.q.coeffs().allFinite() || !found.t.allFinite() || !(s > 0)) return std::nullopt;
+  if (!found.q.coeffs().allFinite() || !found.t.allFinite()) return std::nullopt;
+  if (!(s > kCollapsedScale * start.s)) return std::nullopt;
   return found;
 }
 

@@ -27,8 +27,9 @@ struct QuaternionOptions {
 /// Seed 1, eq 7, as printed:
 ///   f(q, t, s) = sum |q q_H - q_E q|^2 + sum |Q((I - R_E) t - t_E) + q Q(s t_H) q*|^2
 ///              + lambda (1 - q* q)^2,  lambda = 2e6.
-/// With s = 1 fixed it is the function of Horaud and Dornaika 1995 ("Hand-eye calibration", the
-/// non-linear method). It adds rad^2 to the square of the eye's unit: give the eye in mm.
+/// With s = 1 fixed it is the non-linear method of Horaud and Dornaika 1995 ("Hand-eye
+/// calibration") as the seed gives it. There |q|^2 acts as a scale that lambda alone holds at 1;
+/// with s free it does not. It adds rad^2 to the square of the eye's unit: give the eye in mm.
 class QuaternionObjective {
  public:
   /// `about`: near R_X; settles the signs of the movements' quaternions near 180 degrees.
@@ -36,7 +37,7 @@ class QuaternionObjective {
 
   double value(const QuaternionUnknowns& x) const;
 
-  /// The minimum next to `start`; nothing when there is none or s is not positive.
+  /// The minimum next to `start`, whose s is positive; nothing when there is none.
   std::optional<QuaternionUnknowns> minimise(const QuaternionUnknowns& start,
                                              const QuaternionOptions& options = {}) const;
 

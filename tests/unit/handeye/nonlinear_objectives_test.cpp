@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "daemon/handeye/methods/dual_quaternion_objective.hpp"
+#include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/methods/quaternion_objective.hpp"
+#include "daemon/handeye/selection.hpp"
 #include "tests/unit/handeye/nonlinear_scenes.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 
@@ -191,6 +193,15 @@ TEST(NonlinearObjectives, NoNeighbourIsBetterThanTheMinimum) {
                                           y->dual + step * random.quaternion()};
     EXPECT_GE(dual_quaternion.value(near_y), dual_quaternion.value(*y) * (1 - 1e-12));
   }
+}
+
+/// With a fixed point, eq 15 falls all the way to s = 0: no answer, rather than that one.
+TEST(NonlinearObjectives, Equation15HasNoMinimumOnTheRealLaparoscope) {
+  const auto poses = synthetic::real_poses("laparoscope.csv");
+  if (poses.empty()) GTEST_SKIP() << "no poses/laparoscope.csv";
+  const auto movements = select_movements(poses).movements;
+  EXPECT_TRUE(nonlinear_quaternion({.movements = movements}));
+  EXPECT_FALSE(nonlinear_dual_quaternion({.movements = movements}));
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/perspective/one_step.hpp"
+
+#include "daemon/handeye/perspective/gauss_newton.hpp"
+#include "daemon/handeye/perspective/planar_start.hpp"
+
+namespace handeye {
+namespace {
+
+/// A hand that disagrees with its images by more than this is no noisy hand but a wrong one.
+constexpr double kWrongHand_rad = 0.1;
+/// What is known no better than this is not known.
+constexpr double kUnknown_deg = 10.0;
+
+SensorLens starting_lens(const Observations& observations, const PerspectiveOptions& options) {
+  SensorLens lens{.pixel_mm = observations.pixel_mm};
+  lens.centre_px = options.start.centre_px.value_or(
+      Eigen::Vector2d(0.5 * (observations.width - 1), 0.5 * (observations.height - 1)));
+  if (options.distortion_inside) lens.k1_per_mm2 = options.start.k1_per_mm2.value_or(0.0);
+  return lens;
+}
+
+/// Lens, matrices and Y before the first step.
+std::optional<PerspectiveState> starting_state(const Observations& observations,
+                                               const PerspectiveOptions& options, bool planar) {
+  PerspectiveState state;
+  if (planar) {
+    const auto zhang = planar_start(observations, options.distortion_inside);
+    if (!zhang) return std::nullopt;
+    state = *zhang;
+  } else {
+    state.lens = starting_lens(observations, options);
+    state.matrices = options.start.matrices;
+    if (state.matrices.empty()) {
+      auto matrices = matrices_by_dlt(observations, state.lens);
+      if (!matrices) return std::nullopt;
+      state.matrices = std::move(*matrices);
+    }
+  }
+  const auto closed_form =
+      closed_form_object_from_hand(matrix_positions(observations, state.matrices));
+  if (!closed_form && !options.start.object_from_hand) return std::nullopt;
+  state.object_from_hand =
+      options.start.object_from_hand ? *options.start.object_from_hand : *closed_form;
+  return state;
+}
+
+/// The iteration of the case at hand; nothing when it diverges.
+std::optional<GaussNewtonResult> iterate(const Observations& observations,
+                                         const PerspectiveState& start, bool with_lens) {
+  if (with_lens) return gauss_newton(observations, start);
+  const auto found =
+      matrix_method(matrix_positions(observations, start.matrices), start.object_from_hand);
+  if (!found) return std::nullopt;
+  GaussNewtonResult result{.state = start, .iterations = found->iterations};
+  result.state.object_from_hand = found->object_from_hand;
+  return result;
+}
+
+/// Camera and hand_from_eye from M_1 Y = K * eye_from_hand.
+std::optional<RefinedCalibration> taken_apart(const PerspectiveState& state) {
+  const PerspectiveMatrix product = state.matrices.front() * state.object_from_hand.matrix();
+  const auto parts = decompose(product);
+  if (!parts) return std::nullopt;
+  const Eigen::Matrix3d& k = parts->intrinsics;
+  const Eigen::Vector2d centre =
+      state.lens.centre_px + Eigen::Vector2d(k(0, 2), k(1, 2)).cwiseQuotient(state.lens.pixel_mm);
+  RefinedCalibration calibration{.object_from_hand = state.object_from_hand,
+                                 .hand_from_eye = parts->eye_from_object.inverse()};
+  calibration.camera = {k(0, 0) / state.lens.pixel_mm.x(), k(1, 1) / state.lens.pixel_mm.y(),
+                        centre.x(), centre.y(), state.lens.k1_per_mm2};
+  return calibration;
+}
+
+PerspectiveRefusal not_determined() {
+  return {"uncertain",
+          "the observations do not determine camera and hand-eye: use more positions, turned "
+          "further about two axes, with points that fill the image"};
+}
+
+std::optional<PerspectiveRefusal> doubtful(const Refinement& refinement) {
+  if (refinement.calibration.hand_noise.rotation_rad > kWrongHand_rad) {
+    return PerspectiveRefusal{"inconsistent",
+                              "the images contradict the hand's poses: is hand1_from_hand given "
+                              "(not its inverse), in mm, in the order of the images?"};
+  }
+  const PerspectiveSigma& sigma = refinement.sigma;
+  const bool known = sigma.hand_from_eye_deg < kUnknown_deg &&
+                     sigma.object_from_hand_deg < kUnknown_deg &&
+                     sigma.camera.fx < refinement.calibration.camera.fx;
+  if (!known) return not_determined();
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
+    const Observations& observations, const PerspectiveOptions& options) {
+  if (const auto refusal = lacking(observations)) return *refusal;
+  const bool planar = observations.planar();
+  const auto start = starting_state(observations, options, planar);
+  if (!start) return not_determined();
+
+  PerspectiveCalibration calibration;
+  PerspectiveState state = *start;
+  if (const auto found = iterate(observations, *start, options.distortion_inside && !planar)) {
+    state = found->state;
+    calibration.iterations = found->iterations;
+    calibration.matrix_object_from_hand = state.object_from_hand;
+    calibration.matrices = state.matrices;
+  } else if (options.start.object_from_hand || !options.start.matrices.empty()) {
+    return PerspectiveRefusal{"no_convergence",
+                              "Gauss-Newton does not converge from the start given: leave it out"};
+  }
+  const auto parts = taken_apart(state);
+  if (!parts) {
+    return PerspectiveRefusal{"inconsistent",
+                              "no camera makes these images: do u and v run right and down, and is "
+                              "the object's frame right-handed?"};
+  }
+  const auto refinement = refine(observations, *parts, options.distortion_inside);
+  if (!refinement) return not_determined();
+  if (const auto refusal = doubtful(*refinement)) return *refusal;
+  calibration.refined = refinement->calibration;
+  calibration.sigma = refinement->sigma;
+  return calibration;
+}
+
+}  // namespace handeye

@@ -57,10 +57,30 @@ struct HandEyeProblem {
 /// translations are in mm and the solution's scale is 1.
 using Solver = std::optional<HandEyeSolution> (*)(const HandEyeProblem& problem);
 
+/// Which equations a method solves, to first order: by them the noise of the poses passes into its
+/// answer (sandwich.hpp). Those that say "then" solve in stages.
+enum class ErrorModel {
+  kNone,                   ///< not from movements, or not known
+  kQuaternions,            ///< rotation by quaternions, then translation
+  kGibbsVector,            ///< rotation by Tsai and Lenz, then translation
+  kAxisFrames,             ///< rotation by Shiu and Ahmad, then translation
+  kLogarithms,             ///< rotation by logarithms, then translation
+  kEntries,                ///< rotation by its nine entries (with translation), then translation
+  kScrews,                 ///< rotation by axes, then translation by the screws' moments
+  kQuaternionsJoint,       ///< rotation and translation at once, quaternions and mm
+  kDualQuaternions,        ///< at once, dual quaternions
+  kScaleDualQuaternions,   ///< rotation, then scale, then dual quaternions
+  kScaleQuaternionsJoint,  ///< rotation, then scale, then quaternions and mm at once
+  kEquation7,              ///< scale by eq 7, then dual quaternions
+  kEquation15,             ///< scale by eq 15, then dual quaternions
+  kEntriesJoint,           ///< nine entries, translation and scale at once
+};
+
 struct Method {
   std::string_view name;  ///< as users know it; the same name may be in both tables
   Solver solve;
   std::string_view source;  ///< paper and equation
+  ErrorModel error_model{ErrorModel::kNone};
 };
 
 /// Every method for this case, in the order in which results list them; the last one is the answer.

@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/dual_quaternion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "daemon/handeye/linear_parts.hpp"
+#include "daemon/handeye/methods/signed_quaternions.hpp"
+#include "daemon/handeye/translation_weights.hpp"
 
 namespace handeye {
 namespace {
 
 constexpr double kMinConditioning = 1e-9;  // sixth singular value to the first
-
-/// Dual part (1/2) Q(t) q of a rigid motion.
-Eigen::Quaterniond dual_part(const Eigen::Quaterniond& q, const Eigen::Vector3d& t) {
-  Eigen::Quaterniond dual = Eigen::Quaterniond(0, t.x(), t.y(), t.z()) * q;
-  dual.coeffs() *= 0.5;
-  return dual;
-}
+constexpr int kWeightRounds = 2;
 
 /// One movement's vector parts of q_E q = q q_H and its dual, on (q; q_d), w first.
 Eigen::Matrix<double, 6, 8> rows_of(const Movement& movement, const Eigen::Quaterniond& about) {
-  const Eigen::Quaterniond hand(movement.hand_j_from_hand_i.linear());
-  Eigen::Quaterniond eye(movement.eye_j_from_eye_i.linear());
-  if (eye.dot(about * hand * about.conjugate()) < 0) eye.coeffs() = -eye.coeffs();
+  const auto [hand, eye] = signed_quaternions(movement, about);
   const Eigen::Quaterniond hand_dual = dual_part(hand, movement.hand_j_from_hand_i.translation());
   const Eigen::Quaterniond eye_dual = dual_part(eye, movement.eye_j_from_eye_i.translation());
 
@@ -64,16 +59,8 @@ std::optional<Eigen::Matrix<double, 8, 1>> unit_combination(const Eigen::MatrixX
   return best;
 }
 
-}  // namespace
-
-std::optional<Pose> eye_from_hand_by_dual_quaternions(std::span<const Movement> movements,
-                                                      const Eigen::Matrix3d& about) {
-  if (movements.size() < 2) return std::nullopt;
-  const Eigen::Quaterniond q_about(about);
-  Eigen::MatrixXd stacked(6 * static_cast<Eigen::Index>(movements.size()), 8);
-  for (std::size_t k = 0; k < movements.size(); ++k) {
-    stacked.middleRows<6>(6 * static_cast<Eigen::Index>(k)) = rows_of(movements[k], q_about);
-  }
+/// `dual_unit`: the last four columns of the stacked rows are of q_d in this unit.
+std::optional<Pose> solve(const Eigen::MatrixXd& stacked, double dual_unit) {
   const RightSingular singular = right_singular(stacked);
   if (!(singular.values[5] > kMinConditioning * singular.values[0])) return std::nullopt;
   const auto solution = unit_combination(singular.vectors.rightCols(2));
@@ -81,7 +68,39 @@ std::optional<Pose> eye_from_hand_by_dual_quaternions(std::span<const Movement> 
   const auto& x = *solution;
   const Eigen::Quaterniond q(x[0], x[1], x[2], x[3]);
   const Eigen::Quaterniond dual(x[4], x[5], x[6], x[7]);
-  return make_pose(q, 2.0 * (dual * q.conjugate()).vec());
+  return make_pose(q, 2.0 * dual_unit * (dual * q.conjugate()).vec());
+}
+
+}  // namespace
+
+std::optional<Pose> eye_from_hand_by_dual_quaternions(std::span<const Movement> movements,
+                                                      const Eigen::Matrix3d& about) {
+  if (movements.size() < 2) return std::nullopt;
+  const auto translation = translation_of(movements, about);
+  if (!translation) return std::nullopt;
+  Pose first = Pose::Identity();
+  first.linear() = about;
+  first.translation() = *translation;
+
+  const Eigen::Quaterniond q_about(about);
+  Eigen::MatrixXd stacked(6 * static_cast<Eigen::Index>(movements.size()), 8);
+  for (std::size_t k = 0; k < movements.size(); ++k) {
+    stacked.middleRows<6>(6 * static_cast<Eigen::Index>(k)) = rows_of(movements[k], q_about);
+  }
+  // With a lever arm much longer than the movements q would be small beside q_d and lose digits.
+  const double dual_unit = std::max(1.0, 0.5 * translation->norm());
+  stacked.rightCols<4>() *= dual_unit;
+  std::optional<Pose> found = first;
+  Eigen::MatrixXd weighted = stacked;
+  for (int round = 0; found && round < kWeightRounds; ++round) {
+    const std::vector<double> weights = translation_weights(movements, *found);
+    for (std::size_t k = 0; k < movements.size(); ++k) {
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(k) + 3;
+      weighted.middleRows<3>(row) = weights[k] * stacked.middleRows<3>(row);
+    }
+    found = solve(weighted, dual_unit);
+  }
+  return found;
 }
 
 }  // namespace handeye

@@ -112,8 +112,7 @@ std::optional<Eigen::VectorXd> least_squares(const Eigen::MatrixXd& matrix,
                                              const Eigen::VectorXd& right) {
   const Eigen::VectorXd column_norms = matrix.colwise().norm();
   if (!(column_norms.minCoeff() > 0)) return std::nullopt;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix *
-                                                 column_norms.cwiseInverse().asDiagonal());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix * column_norms.cwiseInverse().asDiagonal());
   const Eigen::Index n = matrix.cols();
   const Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
   const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(triangle).singularValues();
@@ -139,9 +138,9 @@ std::optional<Eigen::Matrix3d> eye_from_hand_rotation(std::span<const Movement> 
   agree(pairs, rotation_by_entries(movements));
   const auto by_entries = fit_and_agree(std::move(pairs));
   const auto by_angles = fit_and_agree(std::move(below_half_turn));
-  const auto& better =
-      !by_entries || (by_angles && by_angles->residual < by_entries->residual) ? by_angles
-                                                                               : by_entries;
+  const auto& better = !by_entries || (by_angles && by_angles->residual < by_entries->residual)
+                           ? by_angles
+                           : by_entries;
   if (!better) return std::nullopt;
   return better->rotation.toRotationMatrix();
 }

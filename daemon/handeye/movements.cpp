@@ -10,8 +10,8 @@ namespace {
 
 // Only what exact data lack is refused here; what noise hides is for the judge, who knows it.
 constexpr double kRotationTolerance = 1e-6;  // of R^T R - I; poses from text files have as much
-constexpr double kMinRotation_rad = 1e-6;  // rms over the movements
-constexpr double kMinAxisSpread = 1e-6;    // second principal rotation to the first
+constexpr double kMinRotation_rad = 1e-6;    // rms over the movements
+constexpr double kMinAxisSpread = 1e-6;      // second principal rotation to the first
 
 bool is_rigid(const Pose& pose) {
   if (!pose.matrix().allFinite()) return false;
@@ -46,8 +46,7 @@ HandEyeSolution NormalisedMovements::restore(const Pose& eye_from_hand,
   return {in_mm.inverse(), normalised_scale * eye_units / hand_mm};
 }
 
-std::optional<NormalisedMovements> normalise(std::span<const Movement> movements,
-                                             ScaleMode scale) {
+std::optional<NormalisedMovements> normalise(std::span<const Movement> movements, ScaleMode scale) {
   if (movements.size() < 2) return std::nullopt;
   double hand_squares = 0;
   double eye_squares = 0;

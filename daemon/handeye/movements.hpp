@@ -22,9 +22,9 @@ struct NormalisedMovements {
   HandEyeSolution restore(const Pose& eye_from_hand, double normalised_scale) const;
 };
 
-/// Nothing when the movements cannot determine hand-eye whatever the method: fewer than two, numbers
-/// that are not finite, matrices that are not rotations, no rotation, all axes parallel, or, with
-/// unknown scale, one side that never translates.
+/// Nothing when the movements cannot determine hand-eye whatever the method: fewer than two,
+/// numbers that are not finite, matrices that are not rotations, no rotation, all axes parallel,
+/// or, with unknown scale, one side that never translates.
 std::optional<NormalisedMovements> normalise(std::span<const Movement> movements,
                                              ScaleMode scale = ScaleMode::kUnknown);
 

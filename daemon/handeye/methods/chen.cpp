@@ -73,8 +73,7 @@ std::optional<HandEyeSolution> chen(const HandEyeProblem& problem) {
   if (!normalised) return std::nullopt;
   const auto about = eye_from_hand_rotation(normalised->movements);
   if (!about) return std::nullopt;
-  const std::vector<LinePair> lines =
-      line_pairs(normalised->movements, Eigen::Quaterniond(*about));
+  const std::vector<LinePair> lines = line_pairs(normalised->movements, Eigen::Quaterniond(*about));
   const auto rotation = rotation_of(lines);
   if (!rotation) return std::nullopt;
   const auto translation = translation_of_lines(lines, *rotation);

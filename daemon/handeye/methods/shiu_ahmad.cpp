@@ -37,8 +37,7 @@ std::optional<Eigen::Matrix3d> rotation_by_axes(std::span<const Movement> moveme
     if (!(std::min(hand.vec().norm(), eye.vec().norm()) > kSmallestHalfSine)) continue;
     const Eigen::Vector3d n_hand = hand.vec().normalized();
     const Eigen::Vector3d n_eye = eye.vec().normalized();
-    const Eigen::Matrix3d r0 =
-        Eigen::Quaterniond::FromTwoVectors(n_hand, n_eye).toRotationMatrix();
+    const Eigen::Matrix3d r0 = Eigen::Quaterniond::FromTwoVectors(n_hand, n_eye).toRotationMatrix();
     const Eigen::Matrix3d along_axis = n_eye * n_hand.transpose();
     const Vector9d cosine = entries_of(r0 - along_axis).normalized();
     const Vector9d sine = entries_of(skew(n_eye) * r0).normalized();

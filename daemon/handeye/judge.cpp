@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "daemon/handeye/motion_facts.hpp"
+#include "daemon/handeye/usable.hpp"
 
 namespace handeye {
 namespace {
@@ -23,6 +24,7 @@ constexpr double kMaxPivotShare = 0.05;   // of the path left by the best fixed 
 constexpr double kExplained = 0.5;        // of the eye's path by a fixed point: no mere noise
 constexpr double kScaleShare = 0.5;       // of the translation's variance that is the scale's
 constexpr std::size_t kMinHalf = 5;       // poses
+constexpr std::size_t kMinPoses = 5;      // fewer hardly contradict any answer
 
 bool pivots(const MotionFacts& hand, const PoseNoise& noise) {
   return hand.pivot_rms <
@@ -36,7 +38,7 @@ bool turns_about_camera(const MotionFacts& hand, const MotionFacts& eye, const P
 }
 
 MotionProblem classify(const MotionFacts& hand, const MotionFacts* eye, const PoseNoise& noise,
-                       bool images_without_parallax) {
+                       bool images_without_parallax, ScaleMode scale) {
   const Eigen::Vector3d& turn = hand.principal_rotation_rad;
   const double noise_turn = kAboveNoise * noise.hand_rotation_rad;
   const bool turns = turn.norm() > std::max(noise_turn, rad_from_deg(kStillRotation_deg));
@@ -46,11 +48,13 @@ MotionProblem classify(const MotionFacts& hand, const MotionFacts* eye, const Po
   if (turn[0] < std::max(noise_turn, rad_from_deg(kMinRotation_deg))) {
     return MotionProblem::kInsufficientRotation;
   }
-  if (images_without_parallax || (eye && turns_about_camera(hand, *eye, noise))) {
+  const bool scale_is_unknown = scale == ScaleMode::kUnknown;
+  if (images_without_parallax ||
+      (scale_is_unknown && eye && turns_about_camera(hand, *eye, noise))) {
     return MotionProblem::kNoParallax;
   }
   if (turn[1] < std::max(noise_turn, kMinSecondAxis * turn[0])) return MotionProblem::kSingleAxis;
-  if (pivots(hand, noise)) return MotionProblem::kFixedPoint;
+  if (scale_is_unknown && pivots(hand, noise)) return MotionProblem::kFixedPoint;
   return MotionProblem::kNone;
 }
 
@@ -59,7 +63,7 @@ bool scale_is_to_blame(const MaximumLikelihoodResult& result, const JudgeOptions
   const double sigma = result.sigma_translation_mm();
   const double known = result.sigma_translation_known_scale_mm;
   return result.log_scale_sigma > options.max_log_scale_sigma ||
-         (sigma > options.wanted_translation_mm &&
+         (options.solver.estimate_scale && sigma > options.wanted_translation_mm &&
           known * known < (1.0 - kScaleShare) * sigma * sigma);
 }
 
@@ -68,13 +72,28 @@ struct HalvesComparison {
   double chi2{0};
 };
 
+struct Halves {
+  std::vector<HandEyeObservation> first;
+  std::vector<HandEyeObservation> second;
+};
+
+/// In order of time the first and the second half, which something that slipped sets apart; else
+/// every other one.
+Halves halves_of(std::span<const HandEyeObservation> observations, bool in_order_of_time) {
+  Halves halves;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const bool first = in_order_of_time ? k < observations.size() / 2 : k % 2 == 0;
+    (first ? halves.first : halves.second).push_back(observations[k]);
+  }
+  return halves;
+}
+
 std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
                                                const HandEyeSolution& start,
                                                const JudgeOptions& options) {
-  const std::size_t half = observations.size() / 2;
-  if (half < kMinHalf) return std::nullopt;
-  const auto first = maximum_likelihood(observations.first(half), start, options.solver);
-  const auto second = maximum_likelihood(observations.subspan(half), start, options.solver);
+  const Halves halves = halves_of(observations, options.solver.account_for_correlation);
+  const auto first = maximum_likelihood(halves.first, start, options.solver);
+  const auto second = maximum_likelihood(halves.second, start, options.solver);
   if (!first || !second) return std::nullopt;
   HalvesComparison comparison;
   comparison.difference << log_so3(first->solution.hand_from_eye.linear() *
@@ -85,20 +104,48 @@ std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservatio
   return comparison;
 }
 
-/// What the answer is worth, and whether that is enough.
-bool suffices(std::span<const HandEyeObservation> observations,
-              const MaximumLikelihoodResult& result, const JudgeOptions& options,
-              Judgement& judgement) {
+/// What the answer is worth.
+void weigh(std::span<const HandEyeObservation> observations, const MaximumLikelihoodResult& result,
+           const JudgeOptions& options, Judgement& judgement) {
   judgement.covariance = result.covariance;
-  const auto halves = compare_halves(observations, result.solution, options);
-  if (!halves) return false;
-  judgement.halves_chi2 = halves->chi2;
-  if (halves->chi2 > options.halves_chi2_by_chance) {
-    judgement.covariance += 0.25 * halves->difference * halves->difference.transpose();
+  if (observations.size() >= 2 * kMinHalf) {
+    if (const auto halves = compare_halves(observations, result.solution, options)) {
+      judgement.halves_chi2 = halves->chi2;
+      if (halves->chi2 > options.halves_chi2_by_chance) {
+        judgement.covariance += 0.25 * halves->difference * halves->difference.transpose();
+      }
+    }
   }
-  return sigma_rotation_deg(judgement.covariance) <= options.wanted_rotation_deg &&
-         sigma_translation_mm(judgement.covariance) <= options.wanted_translation_mm &&
+  judgement.observability = observability(judgement.covariance);
+}
+
+bool suffices(const Matrix6d& covariance, const MaximumLikelihoodResult& result,
+              const JudgeOptions& options) {
+  return covariance.allFinite() && sigma_rotation_deg(covariance) <= options.wanted_rotation_deg &&
+         sigma_translation_mm(covariance) <= options.wanted_translation_mm &&
          result.log_scale_sigma <= options.max_log_scale_sigma;
+}
+
+/// What is wrong with a motion that did not suffice.
+MotionProblem problem_of(std::span<const HandEyeObservation> observations,
+                         const std::optional<MaximumLikelihoodResult>& result,
+                         const JudgeOptions& options) {
+  std::vector<Pose> hand;
+  std::vector<Pose> eye;
+  for (const HandEyeObservation& observation : observations) {
+    if (!are_usable({&observation.poses, 1})) continue;
+    hand.push_back(observation.poses.room_from_hand);
+    eye.push_back(observation.poses.eye_from_scene.inverse());
+  }
+  const ScaleMode scale = options.solver.estimate_scale ? ScaleMode::kUnknown : ScaleMode::kKnown;
+  const MotionFacts eye_facts = motion_facts(eye);
+  const MotionProblem problem =
+      classify(motion_facts(hand), &eye_facts, options.solver.noise, false, scale);
+  if (problem != MotionProblem::kFixedPoint && problem != MotionProblem::kNone) return problem;
+  // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
+  const bool pivot =
+      result ? scale_is_to_blame(*result, options) : problem == MotionProblem::kFixedPoint;
+  return pivot ? MotionProblem::kFixedPoint : MotionProblem::kUncertain;
 }
 
 }  // namespace
@@ -106,37 +153,31 @@ bool suffices(std::span<const HandEyeObservation> observations,
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   Judgement judgement;
-  if (result && suffices(observations, *result, options, judgement)) {
-    judgement.problem = MotionProblem::kNone;
-    return judgement;
+  if (result) weigh(observations, *result, options, judgement);
+  if (result && observations.size() >= kMinPoses) {
+    const bool two_halves = judgement.halves_chi2.has_value() || observations.size() < 2 * kMinHalf;
+    if (two_halves && suffices(judgement.covariance, *result, options)) {
+      judgement.problem = MotionProblem::kNone;
+      return judgement;
+    }
   }
-  const bool precise_by_itself = result &&
-                                 result->sigma_rotation_deg() <= options.wanted_rotation_deg &&
-                                 result->sigma_translation_mm() <= options.wanted_translation_mm &&
-                                 result->log_scale_sigma <= options.max_log_scale_sigma;
-  if (precise_by_itself) return judgement;  // the motion was enough: uncertain
-
-  std::vector<Pose> hand;
-  std::vector<Pose> eye;
-  for (const HandEyeObservation& observation : observations) {
-    hand.push_back(observation.poses.room_from_hand);
-    eye.push_back(observation.poses.eye_from_scene.inverse());
-  }
-  const MotionFacts eye_facts = motion_facts(eye);
-  judgement.problem = classify(motion_facts(hand), &eye_facts, options.solver.noise, false);
-  if (judgement.problem == MotionProblem::kFixedPoint ||
-      judgement.problem == MotionProblem::kNone) {
-    // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
-    const bool pivot = result ? scale_is_to_blame(*result, options)
-                              : judgement.problem == MotionProblem::kFixedPoint;
-    judgement.problem = pivot ? MotionProblem::kFixedPoint : MotionProblem::kUncertain;
+  // Precise by itself: the motion was enough, and the halves disagree.
+  const bool uncertain =
+      result && observations.size() >= kMinPoses && suffices(result->covariance, *result, options);
+  judgement.problem =
+      uncertain ? MotionProblem::kUncertain : problem_of(observations, result, options);
+  if (result) {
+    judgement.missing =
+        missing_motion(observations, result->solution.hand_from_eye, judgement.observability,
+                       judgement.problem == MotionProblem::kFixedPoint);
   }
   return judgement;
 }
 
 MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const PoseNoise& noise,
                                    bool images_without_parallax) {
-  return classify(motion_facts(room_from_hand), nullptr, noise, images_without_parallax);
+  return classify(motion_facts(room_from_hand), nullptr, noise, images_without_parallax,
+                  ScaleMode::kUnknown);
 }
 
 }  // namespace handeye

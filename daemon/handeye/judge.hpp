@@ -5,6 +5,7 @@
 #include <span>
 
 #include "daemon/handeye/maximum_likelihood.hpp"
+#include "daemon/handeye/observability.hpp"
 
 namespace handeye {
 
@@ -24,23 +25,28 @@ struct JudgeOptions {
   double wanted_translation_mm{1.5};   ///< likewise of dt's
   double max_log_scale_sigma{0.1};     ///< beyond it the linearised covariance means nothing
   double halves_chi2_by_chance{12.6};  ///< of 6 dof: exceeded once in 20; beyond it is a finding
-  MaximumLikelihoodOptions solver;     ///< for the halves; as for the whole
+  /// For the halves; as for the whole. With known scale nothing is asked of the eye's path.
+  MaximumLikelihoodOptions solver;
 };
 
 struct Judgement {
   MotionProblem problem{MotionProblem::kUncertain};  ///< kNone: accepted
-  /// Squared Mahalanobis distance between the answers of the first and the second half of the data
-  /// (6 dof); nothing when a half is too short.
+  /// Squared Mahalanobis distance between the answers of two halves of the data (6 dof): the first
+  /// and the second where they are in order of time, else every other pose. Nothing when a half is
+  /// too short.
   std::optional<double> halves_chi2;
   /// Of hand_from_eye as in MaximumLikelihoodResult, with what the halves add: where they differ by
   /// d and chance does not explain it, d/2 is taken as one more error of the answer, for it is the
   /// standard error of the mean of two. This, not the likelihood's, is what is accepted or refused.
   Matrix6d covariance{Matrix6d::Zero()};
+  Observability observability;  ///< from that covariance
+  MissingMotion missing{
+      MissingMotion::kNone};  ///< what would help a refused answer; kNone: accepted
 };
 
 /// Accepts an answer whose sigmas, the disagreement of its disjoint halves included, are within
 /// what was wanted and whose scale is observable; else names what the motion lacks. `result`: of
-/// the same observations; nothing when there is none.
+/// the same observations; nothing when there is none. Fewer than five poses are never accepted.
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result,
                 const JudgeOptions& options = {});

@@ -3,197 +3,210 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <Eigen/Dense>
 
 #include "daemon/handeye/methods/methods.hpp"
-#include "daemon/handeye/noise_model.hpp"
+#include "daemon/handeye/noise_fit.hpp"
+#include "daemon/handeye/pose_covariance.hpp"
 #include "daemon/handeye/pose_problem.hpp"
+#include "daemon/handeye/scale_profile.hpp"
+#include "daemon/handeye/selection.hpp"
 #include "daemon/handeye/starts.hpp"
+#include "daemon/handeye/usable.hpp"
 
 namespace handeye {
 namespace {
 
-constexpr std::size_t kMinPoses = 4;
-constexpr double kPriorPoses = 5;               // so many poses' worth is the assumed noise
-constexpr double kLargestForCorrelation = 6.0;  // norm to which outliers are cut
-constexpr int kWeightIterations = 10;           // of noise and robust weights
-constexpr double kLowestInformation =
-    1e-13;  // of the scaled normal equations: beyond it, not observed
+constexpr std::size_t kMinPoses = 3;        // two movements
+constexpr int kRejections = 3;              // each with what the one before has left
+constexpr double kDoubtedLogScale = 0.003;  // sigma from which on other scales are tried
+constexpr double kUndecidedSigmas = 0.5;    // standard deviations that an undecided distance is
+constexpr double kScaleSettled = 1e-4;      // change of the log scale that moves no weight
+constexpr double kNoiseSettled = 0.01;      // relative change of a variance that moves no answer
 
-bool usable(std::span<const HandEyeObservation> observations, const HandEyeSolution& start) {
-  const auto finite = [](const HandEyeObservation& o) {
-    return o.poses.room_from_hand.matrix().allFinite() &&
-           o.poses.eye_from_scene.matrix().allFinite() && o.hand_angular_velocity.allFinite() &&
-           o.hand_velocity.allFinite();
+double square(double x) {
+  return x * x;
+}
+
+bool usable(std::span<const HandEyeObservation> observations) {
+  const auto good = [](const HandEyeObservation& o) {
+    return is_usable(o.poses.room_from_hand) && is_usable(o.poses.eye_from_scene) &&
+           o.hand_angular_velocity.allFinite() && o.hand_velocity.allFinite();
   };
   return observations.size() >= kMinPoses &&
-         std::all_of(observations.begin(), observations.end(), finite) &&
-         start.hand_from_eye.matrix().allFinite() && std::isnormal(start.scale_units_per_mm) &&
+         std::all_of(observations.begin(), observations.end(), good);
+}
+
+bool usable(const HandEyeSolution& start) {
+  return is_usable(start.hand_from_eye) && std::isnormal(start.scale_units_per_mm) &&
          start.scale_units_per_mm > 0;
 }
 
-/// Huber's weight of one whitened residual.
-double robust_weight(double norm, double huber) {
-  return norm <= huber ? 1.0 : huber / norm;
+ResidualNoise noise_at(const PoseProblem& problem) {
+  return ResidualNoise(problem.unknowns().eye_in_hand_mm);
 }
 
-/// The noise that explains the residuals, as far as they are not outliers.
-ResidualNoise::Variances fit_noise(const std::vector<Vector6d>& residuals,
-                                   const ResidualNoise& noise, Eigen::Index parameters,
-                                   ResidualNoise::Variances variances,
-                                   const MaximumLikelihoodOptions& options) {
+bool settled(const ResidualNoise::Variances& now, const ResidualNoise::Variances& before) {
+  const auto near = [](double x, double y) { return std::abs(x - y) <= kNoiseSettled * y; };
+  return near(now.hand_rotation, before.hand_rotation) &&
+         near(now.eye_rotation, before.eye_rotation) && near(now.translation, before.translation);
+}
+
+/// Unknowns and noise in turn; the noise that was last fitted.
+ResidualNoise::Variances solve(PoseProblem& problem, const MaximumLikelihoodOptions& options) {
   const ResidualNoise::Variances assumed = variances_of(options.noise);
-  const auto n = static_cast<double>(residuals.size());
-  const double freedom = n / (n - static_cast<double>(parameters) / 6.0);
-  for (int iteration = 0; iteration < kWeightIterations; ++iteration) {
-    const Matrix6d whitening = noise.whitening(variances);
-    Matrix6d squares = Matrix6d::Zero();
-    for (const Vector6d& r : residuals) {
-      // The weight squared (Huber's proposal 2): an outlier counts no more than at the threshold.
-      const double weight = robust_weight((whitening * r).norm(), options.huber);
-      squares += weight * weight * r * r.transpose();
+  ResidualNoise::Variances variances = assumed;
+  problem.minimise(variances);
+  for (int round = 1; round < options.rounds; ++round) {
+    const ResidualNoise::Variances before = variances;
+    const double log_scale = problem.unknowns().log_scale;
+    if (options.estimate_noise) {
+      variances = fit_noise(problem.residuals(), noise_at(problem), problem.parameters(),
+                            options.huber, assumed, before);
     }
-    const Matrix6d mean_square =
-        (kPriorPoses * noise.covariance(assumed) + freedom * squares) / (kPriorPoses + n);
-    variances = noise.estimate(mean_square, variances);
+    problem.minimise(variances);
+    if (settled(variances, before) &&
+        std::abs(problem.unknowns().log_scale - log_scale) < kScaleSettled) {
+      break;
+    }
   }
   return variances;
 }
 
-/// Inverse of the information; finite and huge along what was not observed.
-Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information *
-                                                             scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(kLowestInformation).cwiseInverse();
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * scale.asDiagonal();
-}
-
-/// How many times fewer independent poses there are than poses: the integrated autocorrelation of
-/// the whitened residuals, summed while it is above what chance shows. The unknowns act slowly
-/// compared with it, so that the whole of it counts.
-double correlation_time(const std::vector<Vector6d>& residuals, const Matrix6d& whitening) {
-  std::vector<Vector6d> whitened;
-  whitened.reserve(residuals.size());
-  for (const Vector6d& r : residuals) {
-    Vector6d w = whitening * r;
-    const double norm = w.norm();
-    if (norm > kLargestForCorrelation) w *= kLargestForCorrelation / norm;
-    whitened.push_back(w);
-  }
-  double variance = 0;
-  for (const Vector6d& w : whitened) variance += w.squaredNorm();
-  const auto n = whitened.size();
-  if (!(variance > 0)) return 1.0;
-  const double chance = 2.5 / std::sqrt(6.0 * static_cast<double>(n));
-  double sum = 1.0;
-  for (std::size_t lag = 1; lag < n / 3; ++lag) {
-    double product = 0;
-    for (std::size_t k = lag; k < n; ++k) product += whitened[k].dot(whitened[k - lag]);
-    const double correlation = product / variance;
-    if (correlation < chance) break;
-    sum += 2.0 * correlation;
-  }
-  return sum;
-}
-
-struct Estimate {
-  MaximumLikelihoodResult result;
-  double cost{0};             ///< Huber's, against the assumed noise: comparable between starts
-  std::vector<double> norms;  ///< of the whitened residuals
-};
-
-Estimate estimate_from(std::span<const HandEyeObservation> observations,
-                       const HandEyeSolution& start, const MaximumLikelihoodOptions& options) {
-  PoseProblem problem(observations, start, options);
-  const Eigen::Index p = problem.parameters();
-  ResidualNoise::Variances variances = variances_of(options.noise);
-  const int rounds = std::max(1, options.rounds);
-  for (int round = 0; round < rounds; ++round) {
-    problem.solve(
-        ResidualNoise(problem.solution().hand_from_eye.translation()).whitening(variances));
-    if (!options.estimate_noise) continue;
-    const ResidualNoise noise(problem.solution().hand_from_eye.translation());
-    variances = fit_noise(problem.residuals(), noise, p, variances, options);
-  }
-
-  const ResidualNoise noise(problem.solution().hand_from_eye.translation());
-  const Matrix6d whitening = noise.whitening(variances);
-  const Matrix6d assumed_whitening = noise.whitening(variances_of(options.noise));
-  Eigen::MatrixXd jacobian = problem.jacobian(whitening);
-  const std::vector<Vector6d> residuals = problem.residuals();
-  Estimate estimate;
-  double chi2 = 0;
-  double assumed_chi2 = 0;
-  for (std::size_t k = 0; k < residuals.size(); ++k) {
-    const double norm = (whitening * residuals[k]).norm();
-    estimate.norms.push_back(norm);
-    const double weight = robust_weight(norm, options.huber);
-    jacobian.middleRows<6>(6 * static_cast<Eigen::Index>(k)) *= std::sqrt(weight);
-    chi2 += weight * norm * norm;
-    const double assumed = (assumed_whitening * residuals[k]).norm();
-    assumed_chi2 += assumed * assumed;
-    estimate.cost += assumed <= options.huber ? 0.5 * assumed * assumed
-                                              : options.huber * (assumed - 0.5 * options.huber);
-  }
-  Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-  if (options.estimate_scale) {
-    information(12, 12) += 1.0 / (options.log_scale_prior * options.log_scale_prior);
-  }
-  if (options.estimate_time_offset) {
-    information(p - 1, p - 1) += 1.0 / (options.time_offset_prior_s * options.time_offset_prior_s);
-  }
-  Eigen::MatrixXd covariance = inverse_information(information);
-
-  MaximumLikelihoodResult& result = estimate.result;
-  const double freedom =
-      std::max(1.0, static_cast<double>(6 * residuals.size()) - static_cast<double>(p));
-  result.chi2_per_dof = assumed_chi2 / freedom;
-  if (!options.estimate_noise) {
-    // Noise that was given is believed within what chance explains.
-    const double chance = 1.0 + 3.3 * std::sqrt(2.0 / freedom);
-    if (chi2 / freedom > chance) covariance *= chi2 / freedom;
-  }
-  if (options.account_for_correlation) {
-    result.correlation_inflation = correlation_time(residuals, whitening);
-    covariance *= result.correlation_inflation;
-  }
-  result.poses_used = observations.size();
-  result.solution = problem.solution();
-  result.room_from_scene = problem.room_from_scene();
-  result.covariance = covariance.topLeftCorner<6, 6>();
-  result.noise = noise_of(variances, options.noise);
-  result.sigma_translation_known_scale_mm = result.sigma_translation_mm();
-  if (options.estimate_scale) {
-    result.log_scale_sigma = std::sqrt(covariance(12, 12));
-    const double explained = covariance.block<3, 1>(3, 12).squaredNorm() / covariance(12, 12);
-    result.sigma_translation_known_scale_mm =
-        std::sqrt(std::max(0.0, covariance.block<3, 3>(3, 3).trace() - explained));
-  }
-  if (options.estimate_time_offset) {
-    result.time_offset_correction_s = problem.time_offset_correction_s();
-    result.time_offset_sigma_s = std::sqrt(covariance(p - 1, p - 1));
-  }
-  return estimate;
-}
-
 /// Huber's loss bounds an outlier's pull but keeps it; many that pull the same way would still bias
 /// the answer. So what the noise cannot explain is left out, and the rest solved again.
-MaximumLikelihoodResult estimate_without_outliers(std::span<const HandEyeObservation> observations,
-                                                  const HandEyeSolution& start,
-                                                  const MaximumLikelihoodOptions& options) {
-  const Estimate all = estimate_from(observations, start, options);
-  if (!(options.reject > 0)) return all.result;
-  std::vector<HandEyeObservation> kept;
-  kept.reserve(observations.size());
-  for (std::size_t k = 0; k < observations.size(); ++k) {
-    if (all.norms[k] <= options.reject) kept.push_back(observations[k]);
+ResidualNoise::Variances solve_without_outliers(PoseProblem& problem,
+                                                const MaximumLikelihoodOptions& options) {
+  ResidualNoise::Variances variances = solve(problem, options);
+  for (int pass = 0; options.reject > 0 && pass < kRejections; ++pass) {
+    const Matrix6d whitening = noise_at(problem).whitening(variances);
+    std::vector<bool> kept;
+    for (const Vector6d& residual : problem.all_residuals()) {
+      kept.push_back((whitening * residual).norm() <= options.reject);
+    }
+    const auto left = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
+    if (kept == problem.kept() || left < kMinPoses || 2 * left < kept.size()) break;
+    problem.keep(std::move(kept));
+    variances = solve(problem, options);
   }
-  if (kept.size() == observations.size() || kept.size() < kMinPoses) return all.result;
-  return estimate_from(kept, all.result.solution, options).result;
+  return variances;
+}
+
+double degrees_of_freedom(const PoseProblem& problem, std::size_t poses) {
+  return std::max(1.0, 6.0 * static_cast<double>(poses) - problem.parameters());
+}
+
+/// Noise that was given is believed within what chance explains; beyond it, by how much is it
+/// exceeded.
+double excess(const std::vector<Vector6d>& residuals, const Matrix6d& whitening, double freedom,
+              double huber) {
+  double chi2 = 0;
+  for (const Vector6d& residual : residuals) {
+    const double norm = (whitening * residual).norm();
+    chi2 += std::min(norm, huber) * norm;
+  }
+  const double chance = 1.0 + 3.3 * std::sqrt(2.0 / freedom);
+  return chi2 / freedom > chance ? chi2 / freedom : 1.0;
+}
+
+MaximumLikelihoodResult describe(const PoseProblem& problem,
+                                 const ResidualNoise::Variances& variances,
+                                 const MaximumLikelihoodOptions& options) {
+  const std::vector<Vector6d> residuals = problem.residuals();
+  const ResidualNoise noise = noise_at(problem);
+  const Matrix6d whitening = noise.whitening(variances);
+  const double freedom = degrees_of_freedom(problem, residuals.size());
+
+  MaximumLikelihoodResult result;
+  result.solution = problem.solution();
+  result.room_from_scene = problem.room_from_scene();
+  result.poses_used = residuals.size();
+  for (std::size_t k = 0; k < problem.kept().size(); ++k) {
+    if (!problem.kept()[k]) result.rejected.push_back(k);
+  }
+  result.noise = noise_of(variances);
+  const Matrix6d assumed = noise.whitening(variances_of(options.noise));
+  for (const Vector6d& residual : residuals) {
+    result.chi2_per_dof += (assumed * residual).squaredNorm() / freedom;
+  }
+
+  if (options.account_for_correlation) {
+    result.correlation_inflation = correlation_time(residuals, whitening);
+  }
+  const double inflation =
+      result.correlation_inflation *
+      (options.estimate_noise ? 1.0 : excess(residuals, whitening, freedom, options.huber));
+  UnknownsMatrix covariance =
+      inflation * covariance_of_unknowns(problem, variances, options.estimate_noise);
+  if (options.estimate_scale && covariance(kLogScale, kLogScale) > square(kDoubtedLogScale)) {
+    const double undecided = undecided_log_scale(problem, options, variances, inflation);
+    widen_scale(covariance, kUndecidedSigmas * undecided);
+  }
+  result.covariance = covariance.topLeftCorner<6, 6>();
+  result.sigma_translation_known_scale_mm = result.sigma_translation_mm();
+  if (options.estimate_scale) {
+    const double variance = covariance(kLogScale, kLogScale);
+    result.log_scale_sigma = std::sqrt(variance);
+    const double explained = covariance.block<3, 1>(kEyeShift, kLogScale).squaredNorm() / variance;
+    result.sigma_translation_known_scale_mm =
+        std::sqrt(std::max(0.0, covariance.block<3, 3>(kEyeShift, kEyeShift).trace() - explained));
+  }
+  if (options.estimate_time_offset) {
+    result.time_offset_correction_s = problem.unknowns().time_offset_s;
+    result.time_offset_sigma_s = std::sqrt(covariance(kTimeOffset, kTimeOffset));
+  }
+  return result;
+}
+
+MaximumLikelihoodResult refine(std::span<const HandEyeObservation> observations,
+                               const HandEyeSolution& start,
+                               const MaximumLikelihoodOptions& options) {
+  PoseProblem problem(observations, start, options);
+  const ResidualNoise::Variances variances = solve_without_outliers(problem, options);
+  return describe(problem, variances, options);
+}
+
+/// With the assumed noise from every start: the likeliest. One scale for the eye's noise, that of
+/// the first start, makes them comparable.
+std::optional<HandEyeSolution> best_start(std::span<const HandEyeObservation> observations,
+                                          const std::vector<HandEyeSolution>& starts,
+                                          const MaximumLikelihoodOptions& options) {
+  std::optional<HandEyeSolution> best;
+  double least_cost = 0;
+  for (const HandEyeSolution& start : starts) {
+    if (!usable(start)) continue;
+    PoseProblem problem(observations, start, options);
+    problem.noise_holds_at(starts.front().scale_units_per_mm);
+    const double cost = problem.minimise(variances_of(options.noise));
+    if (best && !(cost < least_cost)) continue;
+    best = problem.solution();
+    least_cost = cost;
+  }
+  return best;
+}
+
+std::optional<MaximumLikelihoodResult> from_movements(
+    std::span<const HandEyeObservation> observations, std::span<const Movement> movements,
+    const MaximumLikelihoodOptions& options) {
+  const ScaleMode scale = options.estimate_scale ? ScaleMode::kUnknown : ScaleMode::kKnown;
+  const auto start = best_start(observations, starting_solutions(movements, scale), options);
+  if (!start) return std::nullopt;
+  return refine(observations, *start, options);
+}
+
+/// As a method of the table.
+std::optional<HandEyeSolution> solve_as_method(const HandEyeProblem& problem, ScaleMode scale) {
+  std::vector<HandEyeObservation> observations;
+  observations.reserve(problem.poses.size());
+  for (const PosePair& pair : problem.poses) observations.push_back({.poses = pair});
+  if (!usable(observations)) return std::nullopt;
+  const auto result = from_movements(observations, problem.movements,
+                                     {.noise = problem.noise,
+                                      .estimate_noise = problem.estimate_noise,
+                                      .estimate_scale = scale == ScaleMode::kUnknown});
+  if (!result) return std::nullopt;
+  return result->solution;
 }
 
 }  // namespace
@@ -217,37 +230,26 @@ double MaximumLikelihoodResult::sigma_translation_mm() const {
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
     const MaximumLikelihoodOptions& options) {
-  if (!usable(observations, start)) return std::nullopt;
-  return estimate_without_outliers(observations, start, options);
+  if (!usable(observations) || !usable(start)) return std::nullopt;
+  return refine(observations, start, options);
 }
 
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const MaximumLikelihoodOptions& options) {
+  if (!usable(observations)) return std::nullopt;
   std::vector<PosePair> poses;
   poses.reserve(observations.size());
   for (const HandEyeObservation& observation : observations) poses.push_back(observation.poses);
-  // With the assumed noise from every start; then the best, and its noise.
-  MaximumLikelihoodOptions first = options;
-  first.estimate_noise = false;
-  first.rounds = 1;
-  std::optional<Estimate> best;
-  for (const HandEyeSolution& start : starting_solutions(poses)) {
-    if (!usable(observations, start)) continue;
-    const Estimate estimate = estimate_from(observations, start, first);
-    if (!best || estimate.cost < best->cost) best = estimate;
-  }
-  if (!best) return std::nullopt;
-  return estimate_without_outliers(observations, best->result.solution, options);
+  const ScaleMode scale = options.estimate_scale ? ScaleMode::kUnknown : ScaleMode::kKnown;
+  return from_movements(observations, select_movements(poses, {.scale = scale}).movements, options);
 }
 
 std::optional<HandEyeSolution> maximum_likelihood_unknown_scale(const HandEyeProblem& problem) {
-  std::vector<HandEyeObservation> observations;
-  observations.reserve(problem.poses.size());
-  for (const PosePair& pair : problem.poses) observations.push_back({.poses = pair});
-  const auto result = maximum_likelihood(
-      observations, {.noise = problem.noise, .estimate_noise = problem.estimate_noise});
-  if (!result) return std::nullopt;
-  return result->solution;
+  return solve_as_method(problem, ScaleMode::kUnknown);
+}
+
+std::optional<HandEyeSolution> maximum_likelihood_known_scale(const HandEyeProblem& problem) {
+  return solve_as_method(problem, ScaleMode::kKnown);
 }
 
 }  // namespace handeye

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "daemon/handeye/types.hpp"
 
@@ -16,17 +17,18 @@ struct HandEyeObservation {
 };
 
 struct MaximumLikelihoodOptions {
-  PoseNoise noise;  ///< assumed; the start where it is estimated
-  bool estimate_noise{true};
-  bool account_for_correlation{true};  ///< inflate the covariance by what the residuals show ///<
-                                       ///< from the residuals (variance components)
-  bool estimate_scale{true};           ///< false: the start's scale is exact
-  double log_scale_prior{0.5};  ///< standard deviation about the start: keeps a free scale finite
+  PoseNoise noise;            ///< assumed; the start where it is estimated
+  bool estimate_noise{true};  ///< from the residuals (variance components)
+  /// The observations are in order of time: what the residuals show to be correlated counts as
+  /// fewer poses. False: their order means nothing.
+  bool account_for_correlation{true};
+  bool estimate_scale{true};         ///< false: the start's scale is exact; without a start it is 1
+  double log_scale_prior{0.5};       ///< standard deviation about the start: keeps a scale finite
   bool estimate_time_offset{false};  ///< needs velocities
   double time_offset_prior_s{0.05};  ///< standard deviation of the correction before the data
   double huber{4.0};   ///< of a whitened residual's norm (6 dof): touches 1.4 % of inliers
   double reject{6.0};  ///< poses beyond this norm are left out in the end; 0: none
-  int rounds{4};       ///< of solving and estimating the noise
+  int rounds{8};       ///< at most, of solving and estimating the noise
 };
 
 /// Square roots of the traces of the rotation's and the translation's block of a covariance of
@@ -47,6 +49,7 @@ struct MaximumLikelihoodResult {
   double log_scale_sigma{0};
   double sigma_translation_known_scale_mm{0};  ///< as sigma_translation_mm, were the scale known
   std::size_t poses_used{0};                   ///< without the outliers
+  std::vector<std::size_t> rejected;           ///< the outliers: indices of observations, ascending
   double chi2_per_dof{0};                      ///< against the assumed noise
   PoseNoise noise;                             ///< as estimated, or as assumed
   double correlation_inflation{1};             ///< of the covariance, for errors correlated in time
@@ -55,16 +58,18 @@ struct MaximumLikelihoodResult {
   double sigma_translation_mm() const;  ///< square root of the trace of dt's block
 };
 
-/// Hand-eye with unknown scale over poses, not pairs (math.md section 4): for every pose k
+/// Hand-eye over poses, not pairs (math.md section 4): for every pose k
 ///   room_from_hand_k * hand_from_eye = room_from_scene * scene_from_eye_k (scaled by 1/s),
-/// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene, s and,
-/// if wanted, a correction of the time offset. `observations` in order of time. One thread: the
-/// same answer every time. Nothing for fewer than four poses or numbers that are not finite.
+/// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene and, if
+/// wanted, s and a correction of the time offset. `observations` in order of time, unless their
+/// correlation is not accounted for. One thread: the same answer every time. Nothing for fewer than
+/// three poses, numbers that are not finite or matrices that are not rotations.
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
     const MaximumLikelihoodOptions& options = {});
 
-/// The same from every start that the linear methods offer; the likeliest.
+/// The same from every start that linear methods offer; the likeliest. Nothing, too, where they
+/// find that not even the rotation is determined.
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const MaximumLikelihoodOptions& options = {});
 

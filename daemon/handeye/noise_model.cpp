@@ -74,19 +74,22 @@ ResidualNoise::Variances ResidualNoise::estimate(const Matrix6d& mean_square,
     if (settled) break;
   }
   const Eigen::Vector3d variances = theta.cwiseProduct(unit);
-  return {variances[0], variances[1], variances[2]};
+  return {variances[0], variances[1], variances[2], start.eye_share};
 }
 
 ResidualNoise::Variances variances_of(const PoseNoise& noise) {
   const auto square = [](double x) { return x * x; };
-  return {square(noise.hand_rotation_rad), square(noise.eye_rotation_rad),
-          square(noise.hand_translation_mm) + square(noise.eye_translation_mm)};
+  const double eye = square(noise.eye_translation_mm);
+  const double translation = square(noise.hand_translation_mm) + eye;
+  return {square(noise.hand_rotation_rad), square(noise.eye_rotation_rad), translation,
+          eye / translation};
 }
 
-PoseNoise noise_of(const ResidualNoise::Variances& variances, const PoseNoise& like) {
-  const double factor = std::sqrt(variances.translation / variances_of(like).translation);
-  return {std::sqrt(variances.hand_rotation), factor * like.hand_translation_mm,
-          std::sqrt(variances.eye_rotation), factor * like.eye_translation_mm};
+PoseNoise noise_of(const ResidualNoise::Variances& variances) {
+  return {std::sqrt(variances.hand_rotation),
+          std::sqrt((1.0 - variances.eye_share) * variances.translation),
+          std::sqrt(variances.eye_rotation),
+          std::sqrt(variances.eye_share * variances.translation)};
 }
 
 }  // namespace handeye

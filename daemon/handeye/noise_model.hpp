@@ -18,6 +18,7 @@ class ResidualNoise {
     double hand_rotation{0};
     double eye_rotation{0};
     double translation{0};
+    double eye_share{0.5};  ///< of `translation`: assumed, never estimated
   };
 
   explicit ResidualNoise(const Eigen::Vector3d& lever_arm_mm) : lever_arm_mm_(lever_arm_mm) {}
@@ -36,7 +37,7 @@ class ResidualNoise {
 
 ResidualNoise::Variances variances_of(const PoseNoise& noise);
 
-/// The inverse, translation shared out between hand and eye in the proportion of `like`.
-PoseNoise noise_of(const ResidualNoise::Variances& variances, const PoseNoise& like);
+/// The inverse.
+PoseNoise noise_of(const ResidualNoise::Variances& variances);
 
 }  // namespace handeye

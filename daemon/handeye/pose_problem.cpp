@@ -1,94 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/pose_problem.hpp"
 
-#include <ceres/ceres.h>
-#include <ceres/rotation.h>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "daemon/handeye/residual_whitening.hpp"
 
 namespace handeye {
 namespace {
 
 constexpr int kMaxIterations = 100;
-constexpr double kTolerance = 1e-14;
+constexpr double kSettled = 1e-15;      // relative decrease of the cost that is still expected
+constexpr double kExact = 1e-20;        // cost of a pose that is as good as none
+constexpr double kMaxDamping = 1e10;    // no step is small enough: at the limit of rounding
+constexpr double kLeastDamping = 1e-9;  // what the first step that fails is repeated with
 
-template <typename T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
-template <typename T>
-using Vector6 = Eigen::Matrix<T, 6, 1>;
-
-template <typename T>
-Vector3<T> rotation_vector(const Eigen::Quaternion<T>& q) {
-  const T wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
-  Vector3<T> w;
-  ceres::QuaternionToAngleAxis(wxyz, w.data());
-  return w;
+double square(double x) {
+  return x * x;
 }
-
-template <typename T>
-Eigen::Quaternion<T> rotation_by(const Vector3<T>& w) {
-  T wxyz[4];
-  ceres::AngleAxisToQuaternion(w.data(), wxyz);
-  return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
-}
-
-/// Keeps a correction near zero where the data say nothing.
-struct Prior {
-  double sigma;
-  template <typename T>
-  bool operator()(const T* correction, T* residual) const {
-    residual[0] = correction[0] / sigma;
-    return true;
-  }
-};
 
 }  // namespace
 
-struct PoseProblem::Residual {
-  CentredPose pose;
-  Matrix6d whitening;
-
-  template <typename T>
-  bool operator()(const T* hand_from_eye, const T* eye_in_hand, const T* room_from_scene,
-                  const T* scene_in_room, const T* log_scale, const T* time_offset,
-                  T* residual) const {
-    const Eigen::Map<const Eigen::Quaternion<T>> rotation_y(hand_from_eye);
-    const Eigen::Map<const Vector3<T>> t_y(eye_in_hand);
-    const Eigen::Map<const Eigen::Quaternion<T>> rotation_z(room_from_scene);
-    const Eigen::Map<const Vector3<T>> t_z(scene_in_room);
-
-    // A larger offset means that the hand was measured earlier: step back along its motion.
-    const Vector3<T> turned = -time_offset[0] * pose.angular_velocity.cast<T>();
-    const Eigen::Quaternion<T> hand = pose.room_from_hand.cast<T>() * rotation_by<T>(turned);
-    const Vector3<T> hand_in_room =
-        pose.hand_in_room_mm.cast<T>() - time_offset[0] * pose.velocity.cast<T>();
-
-    using std::exp;
-    const Vector3<T> eye_in_room =
-        rotation_z * (pose.eye_in_scene_mm.cast<T>() * exp(-log_scale[0])) + t_z;
-    const Eigen::Quaternion<T> hand_inverse = hand.conjugate();
-    Vector6<T> raw;
-    raw.template head<3>() = rotation_vector<T>(
-        hand_inverse * rotation_z * pose.scene_from_eye.cast<T>() * rotation_y.conjugate());
-    raw.template tail<3>() = hand_inverse * (eye_in_room - hand_in_room) - t_y;
-    Eigen::Map<Vector6<T>> whitened(residual);
-    whitened = whitening.cast<T>() * raw;
-    return true;
-  }
-};
-
 PoseProblem::PoseProblem(std::span<const HandEyeObservation> observations,
                          const HandEyeSolution& start, const MaximumLikelihoodOptions& options)
-    : options_(options),
-      start_scale_(start.scale_units_per_mm),
-      hand_from_eye_(start.hand_from_eye.linear()),
-      eye_in_hand_mm_(start.hand_from_eye.translation()) {
+    : options_(options), kept_(observations.size(), true), start_scale_(start.scale_units_per_mm) {
+  unknowns_.hand_from_eye = Eigen::Quaterniond(start.hand_from_eye.linear()).normalized();
+  unknowns_.eye_in_hand_mm = start.hand_from_eye.translation();
   poses_.reserve(observations.size());
   const auto n = static_cast<double>(observations.size());
   for (const HandEyeObservation& observation : observations) {
     const Pose& hand = observation.poses.room_from_hand;
     const Pose eye = observation.poses.eye_from_scene.inverse();
-    poses_.push_back({Eigen::Quaterniond(hand.linear()), hand.translation(),
-                      Eigen::Quaterniond(eye.linear()), eye.translation() / start_scale_,
-                      observation.hand_angular_velocity, observation.hand_velocity});
+    poses_.push_back({Eigen::Quaterniond(hand.linear()).normalized(), hand.translation(),
+                      Eigen::Quaterniond(eye.linear()).normalized(),
+                      eye.translation() / start_scale_, observation.hand_angular_velocity,
+                      observation.hand_velocity});
     room_centre_mm_ += poses_.back().hand_in_room_mm / n;
     scene_centre_mm_ += poses_.back().eye_in_scene_mm / n;
   }
@@ -98,111 +45,178 @@ PoseProblem::PoseProblem(std::span<const HandEyeObservation> observations,
   for (CentredPose& pose : poses_) {
     pose.hand_in_room_mm -= room_centre_mm_;
     pose.eye_in_scene_mm -= scene_centre_mm_;
-    rotations +=
-        (pose.room_from_hand * hand_from_eye_ * pose.scene_from_eye.conjugate()).toRotationMatrix();
+    rotations += (pose.room_from_hand * unknowns_.hand_from_eye * pose.scene_from_eye.conjugate())
+                     .toRotationMatrix();
   }
-  room_from_scene_ = Eigen::Quaterniond(nearest_rotation(rotations));
-  scene_in_room_mm_.setZero();
+  unknowns_.room_from_scene = Eigen::Quaterniond(nearest_rotation(rotations));
   for (const CentredPose& pose : poses_) {
-    scene_in_room_mm_ += (pose.hand_in_room_mm + pose.room_from_hand * eye_in_hand_mm_ -
-                          room_from_scene_ * pose.eye_in_scene_mm) /
-                         n;
+    unknowns_.scene_in_room_mm +=
+        (pose.hand_in_room_mm + pose.room_from_hand * unknowns_.eye_in_hand_mm -
+         unknowns_.room_from_scene * pose.eye_in_scene_mm) /
+        n;
   }
 }
 
-void PoseProblem::solve(const Matrix6d& whitening) {
-  ceres::Problem problem;
-  for (const CentredPose& pose : poses_) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 6, 4, 3, 4, 3, 1, 1>(
-                                 new Residual{pose, whitening}),
-                             new ceres::HuberLoss(options_.huber), hand_from_eye_.coeffs().data(),
-                             eye_in_hand_mm_.data(), room_from_scene_.coeffs().data(),
-                             scene_in_room_mm_.data(), &log_scale_, &time_offset_s_);
+double PoseProblem::loss(double norm) const {
+  return norm <= options_.huber ? 0.5 * square(norm)
+                                : options_.huber * (norm - 0.5 * options_.huber);
+}
+
+double PoseProblem::prior_cost(const PoseUnknowns& unknowns) const {
+  double result = 0;
+  if (options_.estimate_scale) {
+    result += 0.5 * square((unknowns.log_scale - prior_log_scale_) / options_.log_scale_prior);
   }
-  problem.SetManifold(hand_from_eye_.coeffs().data(), new ceres::EigenQuaternionManifold);
-  problem.SetManifold(room_from_scene_.coeffs().data(), new ceres::EigenQuaternionManifold);
-  const auto free_or_fixed = [&](double* correction, bool free, double sigma) {
-    if (free) {
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior, 1, 1>(new Prior{sigma}),
-                               nullptr, correction);
+  if (options_.estimate_time_offset) {
+    result += 0.5 * square(unknowns.time_offset_s / options_.time_offset_prior_s);
+  }
+  return result;
+}
+
+double PoseProblem::cost(const ResidualNoise::Variances& noise,
+                         const PoseUnknowns& unknowns) const {
+  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns);
+  double result = prior_cost(unknowns);
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (kept_[k]) result += loss(whitening.value(pose_residual(poses_[k], unknowns)).norm());
+  }
+  return result;
+}
+
+void PoseProblem::add_poses(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns,
+                            double& cost, UnknownsVector& gradient,
+                            UnknownsMatrix* information) const {
+  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns);
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (!kept_[k]) continue;
+    PoseResidual residual = pose_residual_with_jacobian(poses_[k], unknowns);
+    whitening.apply(residual);
+    const double norm = residual.value.norm();
+    const double weight = norm <= options_.huber ? 1.0 : options_.huber / norm;
+    cost += loss(norm);
+    gradient.noalias() += residual.jacobian.transpose() * (weight * residual.value);
+    if (information) {
+      information->noalias() += residual.jacobian.transpose() * (weight * residual.jacobian);
+    }
+  }
+}
+
+void PoseProblem::add_priors(const PoseUnknowns& unknowns, UnknownsVector& gradient,
+                             UnknownsMatrix* information) const {
+  const auto add = [&](int index, double value, double sigma) {
+    if (estimates(index)) {
+      gradient[index] += value / square(sigma);
+      if (information) (*information)(index, index) += 1.0 / square(sigma);
     } else {
-      problem.SetParameterBlockConstant(correction);
+      gradient[index] = 0;
+      if (!information) return;
+      information->row(index).setZero();
+      information->col(index).setZero();
+      (*information)(index, index) = 1;
     }
   };
-  free_or_fixed(&log_scale_, options_.estimate_scale, options_.log_scale_prior);
-  free_or_fixed(&time_offset_s_, options_.estimate_time_offset, options_.time_offset_prior_s);
+  add(kLogScale, unknowns.log_scale - prior_log_scale_, options_.log_scale_prior);
+  add(kTimeOffset, unknowns.time_offset_s, options_.time_offset_prior_s);
+}
 
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;  // two would not give the same answer every time
-  solver.max_num_iterations = kMaxIterations;
-  solver.function_tolerance = kTolerance;
-  solver.parameter_tolerance = kTolerance;
-  solver.gradient_tolerance = kTolerance;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
+PoseProblem::NormalEquations PoseProblem::normal_equations(const ResidualNoise::Variances& noise,
+                                                           const PoseUnknowns& unknowns) const {
+  NormalEquations equations;
+  equations.cost = prior_cost(unknowns);
+  add_poses(noise, unknowns, equations.cost, equations.gradient, &equations.information);
+  add_priors(unknowns, equations.gradient, &equations.information);
+  return equations;
+}
+
+UnknownsVector PoseProblem::gradient(const ResidualNoise::Variances& noise,
+                                     const PoseUnknowns& unknowns) const {
+  double cost = 0;
+  UnknownsVector result = UnknownsVector::Zero();
+  add_poses(noise, unknowns, cost, result, nullptr);
+  add_priors(unknowns, result, nullptr);
+  return result;
+}
+
+double PoseProblem::minimise(const ResidualNoise::Variances& noise) {
+  prior_log_scale_ = unknowns_.log_scale;
+  if (noise_follows_) noise_log_scale_ = unknowns_.log_scale;
+  NormalEquations now = normal_equations(noise, unknowns_);
+  double damping = 0;
+  for (int iteration = 0; iteration < kMaxIterations && damping < kMaxDamping; ++iteration) {
+    if (!(now.cost > kExact * static_cast<double>(poses_.size()))) break;
+    // In units of the diagonal, so that damping means the same for rad and mm.
+    const UnknownsVector unit =
+        now.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    UnknownsMatrix scaled = unit.asDiagonal() * now.information * unit.asDiagonal();
+    scaled.diagonal().array() += damping;
+    const UnknownsVector right = -unit.cwiseProduct(now.gradient);
+    const UnknownsVector solved = scaled.ldlt().solve(right);
+    const UnknownsVector step = unit.cwiseProduct(solved);
+    if (!step.allFinite()) {
+      damping = std::max(10.0 * damping, kLeastDamping);
+      continue;
+    }
+    const double expected = 0.5 * (right.dot(solved) + damping * solved.squaredNorm());
+    if (expected < kSettled * now.cost) break;
+    const PoseUnknowns next = unknowns_.moved_by(step);
+    const double next_cost = cost(noise, next);
+    if (next_cost < now.cost) {
+      unknowns_ = next;
+      now = normal_equations(noise, unknowns_);
+      damping = damping > kLeastDamping ? 0.1 * damping : 0.0;
+    } else {
+      damping = std::max(10.0 * damping, kLeastDamping);
+    }
+  }
+  return now.cost;
+}
+
+void PoseProblem::hold_scale(double log_scale) {
+  options_.estimate_scale = false;
+  noise_follows_ = false;
+  unknowns_.log_scale = log_scale;
+}
+
+void PoseProblem::noise_holds_at(double scale_units_per_mm) {
+  noise_log_scale_ = std::log(scale_units_per_mm / start_scale_);
+  noise_follows_ = false;
+}
+
+std::vector<Vector6d> PoseProblem::all_residuals() const {
+  std::vector<Vector6d> result;
+  result.reserve(poses_.size());
+  for (const CentredPose& pose : poses_) result.push_back(pose_residual(pose, unknowns_));
+  return result;
 }
 
 std::vector<Vector6d> PoseProblem::residuals() const {
-  std::vector<Vector6d> result(poses_.size());
+  std::vector<Vector6d> result;
+  result.reserve(poses_.size());
   for (std::size_t k = 0; k < poses_.size(); ++k) {
-    const Residual residual{poses_[k], Matrix6d::Identity()};
-    residual(hand_from_eye_.coeffs().data(), eye_in_hand_mm_.data(),
-             room_from_scene_.coeffs().data(), scene_in_room_mm_.data(), &log_scale_,
-             &time_offset_s_, result[k].data());
+    if (kept_[k]) result.push_back(pose_residual(poses_[k], unknowns_));
   }
   return result;
 }
 
-Eigen::MatrixXd PoseProblem::jacobian(const Matrix6d& whitening) const {
-  using Jet = ceres::Jet<double, 14>;
-  Eigen::Matrix<double, 6, 14> rows;
-  Eigen::MatrixXd result(6 * static_cast<Eigen::Index>(poses_.size()), parameters());
-  const auto turned = [](const Eigen::Quaterniond& q, int first) {
-    Vector3<Jet> w;
-    for (int i = 0; i < 3; ++i) w[i] = Jet(0.0, first + i);
-    return Eigen::Quaternion<Jet>(rotation_by<Jet>(w) * q.cast<Jet>());
-  };
-  const auto moved = [](const Eigen::Vector3d& t, int first) {
-    Vector3<Jet> result_t;
-    for (int i = 0; i < 3; ++i) result_t[i] = Jet(t[i], first + i);
-    return result_t;
-  };
-  const Eigen::Quaternion<Jet> rotation_y = turned(hand_from_eye_, 0);
-  const Vector3<Jet> t_y = moved(eye_in_hand_mm_, 3);
-  const Eigen::Quaternion<Jet> rotation_z = turned(room_from_scene_, 6);
-  const Vector3<Jet> t_z = moved(scene_in_room_mm_, 9);
-  const Jet log_scale(log_scale_, 12);
-  const Jet time_offset(time_offset_s_, 13);
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    Vector6<Jet> residual;
-    Residual{poses_[k], whitening}(rotation_y.coeffs().data(), t_y.data(),
-                                   rotation_z.coeffs().data(), t_z.data(), &log_scale, &time_offset,
-                                   residual.data());
-    for (int i = 0; i < 6; ++i) rows.row(i) = residual[i].v.transpose();
-    const Eigen::Index top = 6 * static_cast<Eigen::Index>(k);
-    result.block<6, 12>(top, 0) = rows.leftCols<12>();
-    Eigen::Index column = 12;
-    if (options_.estimate_scale) result.block<6, 1>(top, column++) = rows.col(12);
-    if (options_.estimate_time_offset) result.block<6, 1>(top, column++) = rows.col(13);
-  }
-  return result;
+bool PoseProblem::estimates(int unknown) const {
+  if (unknown == kLogScale) return options_.estimate_scale;
+  return unknown != kTimeOffset || options_.estimate_time_offset;
 }
 
-Eigen::Index PoseProblem::parameters() const {
+int PoseProblem::parameters() const {
   return 12 + (options_.estimate_scale ? 1 : 0) + (options_.estimate_time_offset ? 1 : 0);
 }
 
 HandEyeSolution PoseProblem::solution() const {
-  return {make_pose(hand_from_eye_, eye_in_hand_mm_), start_scale_ * std::exp(log_scale_)};
+  return {make_pose(unknowns_.hand_from_eye, unknowns_.eye_in_hand_mm),
+          options_.estimate_scale ? start_scale_ * std::exp(unknowns_.log_scale) : start_scale_};
 }
 
 Pose PoseProblem::room_from_scene() const {
   // The scene is scaled about its origin, not about the mean of the eyes.
-  const Eigen::Vector3d centre_mm = scene_centre_mm_ * std::exp(-log_scale_);
-  return make_pose(room_from_scene_,
-                   scene_in_room_mm_ + room_centre_mm_ - room_from_scene_ * centre_mm);
+  const Eigen::Vector3d centre_mm = scene_centre_mm_ * std::exp(-unknowns_.log_scale);
+  return make_pose(unknowns_.room_from_scene, unknowns_.scene_in_room_mm + room_centre_mm_ -
+                                                  unknowns_.room_from_scene * centre_mm);
 }
 
 }  // namespace handeye

@@ -5,55 +5,80 @@
 #include <vector>
 
 #include "daemon/handeye/maximum_likelihood.hpp"
+#include "daemon/handeye/noise_model.hpp"
+#include "daemon/handeye/pose_residual.hpp"
 
 namespace handeye {
 
-/// The least-squares problem of `maximum_likelihood` for a given noise: residuals, minimiser,
-/// Jacobian. Scene in mm by the start's scale, room and scene counted from the mean of their poses,
-/// which keeps the normal equations well conditioned whatever the origins.
+/// The weighted least-squares problem of `maximum_likelihood`: a sum over poses with Huber's loss,
+/// and its minimiser. Scene in mm by the start's scale, room and scene counted from the mean of
+/// their poses, which keeps the normal equations well conditioned whatever the origins.
 class PoseProblem {
  public:
   PoseProblem(std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
               const MaximumLikelihoodOptions& options);
 
-  /// Minimises the whitened residuals with Huber's loss (Ceres, one thread).
-  void solve(const Matrix6d& whitening);
+  /// The normal equations at given unknowns. Unknowns that are not estimated have a unit diagonal
+  /// and no gradient.
+  struct NormalEquations {
+    double cost{0};
+    UnknownsVector gradient{UnknownsVector::Zero()};
+    UnknownsMatrix information{UnknownsMatrix::Zero()};  ///< Gauss-Newton's
+  };
+  NormalEquations normal_equations(const ResidualNoise::Variances& noise,
+                                   const PoseUnknowns& unknowns) const;
 
-  /// Residual per pose, not whitened: rotation [rad] and position of the camera [mm], hand frame.
+  UnknownsVector gradient(const ResidualNoise::Variances& noise,
+                          const PoseUnknowns& unknowns) const;
+
+  /// Levenberg-Marquardt from where it stands, poses that were left out not counted. The prior of
+  /// the scale is taken about where it starts. Returns the cost.
+  double minimise(const ResidualNoise::Variances& noise);
+
+  /// From now on the scale is not estimated but this, while the eye's noise holds where it held;
+  /// estimated again, about where it stands.
+  void hold_scale(double log_scale);
+  void free_scale() { options_.estimate_scale = true; }
+
+  /// From now on the noise of the eye as given holds at this scale; by default it holds where the
+  /// scale is when `minimise` is called.
+  void noise_holds_at(double scale_units_per_mm);
+
+  /// Counts only the poses that are true in `kept`, from now on.
+  void keep(std::vector<bool> kept) { kept_ = std::move(kept); }
+  const std::vector<bool>& kept() const { return kept_; }
+
+  /// Not whitened; of the poses that count.
   std::vector<Vector6d> residuals() const;
+  /// Of all poses.
+  std::vector<Vector6d> all_residuals() const;
 
-  /// Of the whitened residuals, without the loss. Columns: w and dt of hand_from_eye, w and dt of
-  /// room_from_scene, then log scale and time offset, those that are estimated.
-  Eigen::MatrixXd jacobian(const Matrix6d& whitening) const;
-
-  Eigen::Index parameters() const;
+  bool estimates(int unknown) const;
+  int parameters() const;  ///< number of unknowns that are estimated
+  const PoseUnknowns& unknowns() const { return unknowns_; }
   HandEyeSolution solution() const;
   Pose room_from_scene() const;  ///< scene in mm
-  double time_offset_correction_s() const { return time_offset_s_; }
 
  private:
-  struct CentredPose {
-    Eigen::Quaterniond room_from_hand;
-    Eigen::Vector3d hand_in_room_mm;
-    Eigen::Quaterniond scene_from_eye;
-    Eigen::Vector3d eye_in_scene_mm;
-    Eigen::Vector3d angular_velocity;
-    Eigen::Vector3d velocity;
-  };
-  struct Residual;
+  /// Adds up the poses, the information where there is room for it.
+  void add_poses(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns, double& cost,
+                 UnknownsVector& gradient, UnknownsMatrix* information) const;
+  void add_priors(const PoseUnknowns& unknowns, UnknownsVector& gradient,
+                  UnknownsMatrix* information) const;
+  double cost(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns) const;
+  double prior_cost(const PoseUnknowns& unknowns) const;
+  double loss(double norm) const;
 
   MaximumLikelihoodOptions options_;
   std::vector<CentredPose> poses_;
+  std::vector<bool> kept_;
   double start_scale_{1};
   Eigen::Vector3d room_centre_mm_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d scene_centre_mm_{Eigen::Vector3d::Zero()};
-
-  Eigen::Quaterniond hand_from_eye_;
-  Eigen::Vector3d eye_in_hand_mm_;
-  Eigen::Quaterniond room_from_scene_;
-  Eigen::Vector3d scene_in_room_mm_;
-  double log_scale_{0};  ///< against the start's scale
-  double time_offset_s_{0};
+  PoseUnknowns unknowns_;
+  double prior_log_scale_{0};
+  double noise_log_scale_{0};  ///< where the eye's noise holds
+  bool noise_follows_{true};
 };
 
 }  // namespace handeye

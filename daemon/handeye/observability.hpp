@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "daemon/handeye/maximum_likelihood.hpp"
+
+namespace handeye {
+
+/// What the information matrix says about an answer: the direction that it determines least.
+struct Observability {
+  struct Direction {
+    Eigen::Vector3d axis_in_hand{Eigen::Vector3d::UnitX()};
+    double sigma{0};
+  };
+  Direction rotation_deg;    ///< about the axis
+  Direction translation_mm;  ///< along the axis
+};
+
+/// From a covariance of (w [rad], dt [mm]) of hand_from_eye.
+Observability observability(const Matrix6d& covariance);
+
+/// What a person who holds the scope can do about it. Named as seen in the camera's picture.
+enum class MissingMotion {
+  kNone,
+  kTiltUpAndDown,     ///< turn about the camera's x
+  kTurnLeftAndRight,  ///< about its y
+  kRoll,              ///< about its z
+  kSlideInAndOut,     ///< the scale is what is uncertain
+};
+
+/// The motion that would tell most: sliding where `scale_to_blame`, else of the turns that show the
+/// weakest direction (those about axes across it) the one that there was least of.
+MissingMotion missing_motion(std::span<const HandEyeObservation> observations,
+                             const Pose& hand_from_eye, const Observability& weakest,
+                             bool scale_to_blame);
+
+/// "tilt the scope up and down"; empty for kNone.
+std::string_view words(MissingMotion missing);
+
+}  // namespace handeye

@@ -31,10 +31,11 @@ _handeye_value() {
   case $option in
     --color) _handeye_words 'auto always never' "$current" ;;
     --mask) _handeye_files "$current" '*.png' ;;
-    --save | --truth) _handeye_files "$current" '*.json' ;;
+    --save | --truth | --start) _handeye_files "$current" '*.json' ;;
     --camera | --config | --intrinsics) _handeye_files "$current" ;;
     --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
     --motion) _handeye_words 'free translation rotation single-axis pivot static' "$current" ;;
+    --distortion) _handeye_words 'none inside' "$current" ;;
     --scale) _handeye_words 'known unknown' "$current" ;;
     --method) _handeye_words "all $(_handeye_methods)" "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
@@ -45,7 +46,7 @@ _handeye_value() {
 
 _handeye() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands='calibrate status watch cancel pose record replay solve compare'
+  local commands='calibrate status watch cancel pose record replay solve onestep compare'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
     _handeye_words "$commands --help --version" "$current"
@@ -61,7 +62,7 @@ _handeye() {
     replay) _handeye_files "$current" '*.lcm' ;;
     solve) _handeye_files "$current" '*.csv' ;;
     record) _handeye_files "$current" ;;
-    compare) _handeye_files "$current" '*.json' ;;
+    onestep | compare) _handeye_files "$current" '*.json' ;;
   esac
 }
 

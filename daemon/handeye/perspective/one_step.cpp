@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/perspective/one_step.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "daemon/handeye/perspective/gauss_newton.hpp"
 #include "daemon/handeye/perspective/planar_start.hpp"
 
@@ -72,6 +75,44 @@ std::optional<RefinedCalibration> taken_apart(const PerspectiveState& state) {
   return calibration;
 }
 
+/// The pixel's width for which the lens is round: with one focal length in both directions.
+Eigen::Vector2d pixel_of_round_lens(const PerspectiveCamera& camera,
+                                    const Eigen::Vector2d& pixel_mm) {
+  return {pixel_mm.y() * camera.fy / camera.fx, pixel_mm.y()};
+}
+
+/// Whether such a change of the pixel's width could be seen above the image noise.
+bool matters(const Observations& observations, const RefinedCalibration& calibration,
+             const Eigen::Vector2d& pixel_mm) {
+  const double radius_mm = 0.5 * observations.height * observations.pixel_mm.y();
+  const double change = std::abs(pixel_mm.x() / observations.pixel_mm.x() - 1.0);
+  const double shift_mm =
+      change * std::abs(calibration.camera.k1_per_mm2) * radius_mm * radius_mm * radius_mm;
+  constexpr double kSame = 1e-12;
+  return change > kSame && shift_mm > calibration.image_noise_px * pixel_mm.y();
+}
+
+/// A frame grabber samples lines at a rate of its own, so the pixel's width is often known by its
+/// name only (Tsai's uncertainty factor). Where the images show that the lens is round with another
+/// width, that one is taken; `observations` then carries it.
+Refinement with_round_lens(Observations& observations, Refinement refinement) {
+  constexpr int kRounds = 6;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Vector2d pixel_mm =
+        pixel_of_round_lens(refinement.calibration.camera, observations.pixel_mm);
+    if (!matters(observations, refinement.calibration, pixel_mm)) break;
+    Observations other = observations;
+    other.pixel_mm = pixel_mm;
+    const auto found = refine(other, refinement.calibration, true);
+    if (!found || !(found->calibration.reprojection_px < refinement.calibration.reprojection_px)) {
+      break;
+    }
+    observations = std::move(other);
+    refinement = *found;
+  }
+  return refinement;
+}
+
 PerspectiveRefusal not_determined() {
   return {"uncertain",
           "the observations do not determine camera and hand-eye: use more positions, turned "
@@ -95,7 +136,8 @@ std::optional<PerspectiveRefusal> doubtful(const Refinement& refinement) {
 }  // namespace
 
 std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
-    const Observations& observations, const PerspectiveOptions& options) {
+    const Observations& given, const PerspectiveOptions& options) {
+  Observations observations = given;
   if (const auto refusal = lacking(observations)) return *refusal;
   const bool planar = observations.planar();
   const auto start = starting_state(observations, options, planar);
@@ -118,11 +160,15 @@ std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
                               "no camera makes these images: do u and v run right and down, and is "
                               "the object's frame right-handed?"};
   }
-  const auto refinement = refine(observations, *parts, options.distortion_inside);
+  auto refinement = refine(observations, *parts, options.distortion_inside);
   if (!refinement) return not_determined();
+  if (options.distortion_inside) {
+    refinement = with_round_lens(observations, std::move(*refinement));
+  }
   if (const auto refusal = doubtful(*refinement)) return *refusal;
   calibration.refined = refinement->calibration;
   calibration.sigma = refinement->sigma;
+  calibration.pixel_mm = observations.pixel_mm;
   return calibration;
 }
 

@@ -28,6 +28,8 @@ struct PerspectiveOptions {
 };
 
 struct PerspectiveCalibration {
+  /// Of a pixel: as given, or with the width for which the lens is round where the images show so.
+  Eigen::Vector2d pixel_mm{0.0, 0.0};
   RefinedCalibration refined;  ///< the answer
   PerspectiveSigma sigma;
   int iterations{0};                            ///< Gauss-Newton steps of the matrix method

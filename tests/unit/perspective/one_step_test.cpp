@@ -36,6 +36,8 @@ struct Scene {
   Pose object_from_hand;
   SensorLens lens{.pixel_mm = {0.003, 0.003}, .centre_px = {330, 250}, .k1_per_mm2 = 0.02};
   double focal_mm{2.1};
+  double anamorphic{1.0};  ///< focal length in x over that in y
+  std::vector<Pose> hand1_from_hands;
   Observations observations{.width = 640, .height = 480, .pixel_mm = {0.003, 0.003}};
 
   explicit Scene(bool planar, double y_angle_deg = 140.0, int positions = 8, unsigned seed = 3) {
@@ -58,6 +60,7 @@ struct Scene {
         eye1_from_eye.translation() = target - eye1_from_eye.linear() * target + 15.0 * vector();
       }
       const Pose hand1_from_hand = hand_from_eye * eye1_from_eye * hand_from_eye.inverse();
+      hand1_from_hands.push_back(hand1_from_hand);
       add_position(hand1_from_hand, planar);
     }
   }
@@ -68,7 +71,8 @@ struct Scene {
     for (int x = 0; x < 6; ++x) {
       for (int y = 0; y < 6; ++y) {
         const Eigen::Vector3d point(10.0 * x, 10.0 * y, planar ? 0.0 : 12.0 * ((x + 2 * y) % 3));
-        const Eigen::Vector2d image = focal_mm * (eye_from_object * point).hnormalized();
+        Eigen::Vector2d image = focal_mm * (eye_from_object * point).hnormalized();
+        image.x() *= anamorphic;
         position.points.push_back({point, distorted_pixel(lens, image)});
       }
     }
@@ -174,6 +178,32 @@ TEST(OneStep, IgnoringTheDistortionShowsInTheResiduals) {
   EXPECT_EQ(ignored.refined.camera.k1_per_mm2, 0.0);
   EXPECT_EQ(ignored.sigma.camera.k1_per_mm2, 0.0);
   EXPECT_GT(ignored.refined.reprojection_px, 0.1);
+}
+
+TEST(OneStep, FindsTheWidthOfAPixelThatIsKnownByItsNameOnly) {
+  for (const double factor : {1.011, 0.95}) {
+    Observations observations = chung::observe({});
+    observations.pixel_mm.x() *= factor;
+    const PerspectiveCalibration result = solved(observations);
+    const auto ideal = chung::y_vector(chung::object_from_hand());
+    const auto y = chung::y_vector(result.refined.object_from_hand);
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(y(i) / ideal(i), 1.0, 1e-6) << i;
+    EXPECT_NEAR(result.pixel_mm.x() / chung::pixel_mm().x(), 1.0, 1e-6);
+    EXPECT_NEAR(result.refined.camera.k1_per_mm2 / chung::kK1_per_mm2, 1.0, 1e-6);
+  }
+}
+
+TEST(OneStep, KeepsTheWidthOfAPixelThatIsRight) {
+  // A lens that is not round: twice as long a focal length in x.
+  Scene scene(false);
+  scene.observations.positions.clear();
+  scene.anamorphic = 2.0;
+  for (const Pose& hand : scene.hand1_from_hands) scene.add_position(hand, false);
+  const PerspectiveCalibration result = solved(scene.observations);
+  EXPECT_EQ(result.pixel_mm, scene.observations.pixel_mm);
+  EXPECT_NEAR(result.refined.camera.fx / result.refined.camera.fy, 2.0, 1e-8);
+  EXPECT_LT((result.refined.hand_from_eye.translation() - scene.hand_from_eye.translation()).norm(),
+            1e-5);
 }
 
 /// Mean of (error / sigma)^2 over seeds: 1 when the sigmas are honest. Errors of hand_from_eye's

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "daemon/handeye/methods/least_squares.hpp"
 #include "daemon/handeye/movements.hpp"
 #include "daemon/handeye/sandwich_rows.hpp"
 #include "daemon/handeye/sandwich_stages.hpp"
@@ -97,12 +98,15 @@ bool solve_stage(const Stage& stage, const std::vector<MovementErrors>& movement
       of_shape.bottomRows(3) *= units.weights[k];
     }
     Eigen::MatrixXd jacobian(of_error.rows(), kUnknowns);
-    jacobian << of_error * movement.of_unknowns, of_shape;
+    jacobian << of_error * movement.of_unknowns, of_shape,
+        of_error * movement.of_unknowns.col(kScale);
     normal.noalias() += jacobian.transpose() * jacobian;
     const Eigen::MatrixXd to_unknowns = jacobian.transpose() * of_error;
     gathered[movement.pair[0]].noalias() += to_unknowns * movement.of_i;
     gathered[movement.pair[1]].noalias() += to_unknowns * movement.of_j;
   }
+
+  normal(kLength, kLength) += kConstraintWeight;
 
   const std::vector<Eigen::Index> own = unknowns_of(stage);
   const Eigen::MatrixXd own_normal = normal(own, own);

@@ -9,7 +9,9 @@ std::vector<Stage> stages(ErrorModel model) {
   const Stage scale{.rows = Rows::kTranslation, .shift = true, .scale = true};
   const Stage dual{
       .rows = Rows::kDualQuaternionVectors, .turn = true, .shift = true, .weighted = true};
-  const Stage joint{.rows = Rows::kQuaternionsTranslation, .turn = true, .shift = true};
+  // With the scale free as well, the length costs nothing to keep.
+  const Stage joint{
+      .rows = Rows::kQuaternionsTranslation, .turn = true, .shift = true, .length = true};
   switch (model) {
     case ErrorModel::kNone:
       return {};
@@ -63,6 +65,7 @@ std::vector<Eigen::Index> unknowns_of(const Stage& stage) {
   if (stage.shift) add(kShift, 3);
   if (stage.scale) add(kScale, 1);
   add(kShape, stage.shape);
+  if (stage.length) add(kLength, 1);
   return unknowns;
 }
 

@@ -9,12 +9,14 @@
 namespace handeye {
 
 // The unknowns' errors: of X = eye_from_hand w (R_X -> Exp(w) R_X) and t (mm by the scale found),
-// of log s, and of the shape where nine entries are free (LinearRows::of_shape).
+// of log s, of the shape where nine entries are free (LinearRows::of_shape), and of log |q|^2, by
+// which the printed eq 7 lengthens R_X t_H.
 inline constexpr int kTurn = 0;
 inline constexpr int kShift = 3;
 inline constexpr int kScale = 6;
 inline constexpr int kShape = 7;
-inline constexpr int kUnknowns = 13;
+inline constexpr int kLength = 13;
+inline constexpr int kUnknowns = 14;
 
 /// Which unknowns a stage solves for, the rest being as stages before left them.
 struct Stage {
@@ -23,6 +25,7 @@ struct Stage {
   bool shift{false};
   bool scale{false};
   int shape{0};          ///< 5: det R_X = 1; 6: free
+  bool length{false};    ///< held by the penalty (1 - |q|^2)^2 alone
   bool weighted{false};  ///< the last three rows, by translation_weights
 };
 

@@ -15,6 +15,7 @@ constexpr double kNoiseLever_mm = 150;
 constexpr double kMinSigma = 1e-7;
 constexpr std::size_t kMaxHypotheses = 100;  // for the scale
 constexpr std::size_t kMaxScored = 600;      // movements that each of them is tried on
+constexpr double kRadiusDifferences = 4;     // times their typical one is possible
 constexpr double kAnglesPerSigma = 5;        // an axis is meant by angles of so many sigma
 
 struct Side {
@@ -110,10 +111,13 @@ ScrewPair screw_pair(const Movement& movement) {
 
 double ScrewAgreement::pitch_difference(const ScrewPair& pair) const {
   const double eye_noise_lever_mm = kNoiseLever_mm * mm_per_unit / reference_mm_per_unit;
-  const double eye_radius_mm = mm_per_unit * pair.eye_radius;
+  const double eye_radius_mm =
+      std::min(mm_per_unit * pair.eye_radius, pair.hand_radius_mm + radius_difference_mm);
+  const double hand_radius_mm =
+      std::min(pair.hand_radius_mm, mm_per_unit * pair.eye_radius + radius_difference_mm);
   const double lever_mm =
       std::sqrt(kNoiseLever_mm * kNoiseLever_mm + eye_noise_lever_mm * eye_noise_lever_mm +
-                pair.hand_radius_mm * pair.hand_radius_mm + eye_radius_mm * eye_radius_mm);
+                hand_radius_mm * hand_radius_mm + eye_radius_mm * eye_radius_mm);
   const double eye_mm = mm_per_unit * pair.eye_pitch;
   double difference_mm = std::abs(eye_mm - pair.hand_pitch_mm);
   const double short_of_half_a_turn = kPi - std::max(pair.hand_angle_rad, pair.eye_angle_rad);
@@ -145,6 +149,11 @@ std::optional<ScrewAgreement> screw_agreement(std::span<const ScrewPair> pairs, 
     agreement.reference_mm_per_unit = ratio_of_lengths(pairs);
     agreement.mm_per_unit = best_mm_per_unit(pairs, agreement, quantile);
   }
+  values.clear();
+  for (const ScrewPair& p : pairs) {
+    values.push_back(std::abs(p.hand_radius_mm - agreement.mm_per_unit * p.eye_radius));
+  }
+  agreement.radius_difference_mm = kRadiusDifferences * quantile_of(values, quantile);
   values.clear();
   for (const ScrewPair& p : pairs) values.push_back(agreement.pitch_difference(p));
   agreement.pitch_sigma = std::max(kMinSigma, quantile_of(values, quantile) / per_sigma);

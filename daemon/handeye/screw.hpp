@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -25,10 +26,13 @@ ScrewPair screw_pair(const Movement& movement);
 struct ScrewAgreement {
   double mm_per_unit{1};
   double reference_mm_per_unit{1};  ///< ratio of the path lengths; shares out the eye's noise
-  double angle_sigma_rad{0};        ///< of hand's against eye's angle
-  double pitch_sigma{0};  ///< of the pitches' difference, in units of its lever: about rad
+  /// Hand's and eye's distances from the axis differ by no more: by a lever arm at most.
+  double radius_difference_mm{std::numeric_limits<double>::infinity()};
+  double angle_sigma_rad{0};  ///< of hand's against eye's angle
+  double pitch_sigma{0};      ///< of the pitches' difference, in units of its lever: about rad
 
-  /// Difference of the pitches by the lever through which noise acts on them. Near half a turn the
+  /// Difference of the pitches by the lever through which noise acts on them; a lever that the
+  /// other side does not know is an error itself, and does not excuse any. Near half a turn the
   /// sign of the axis, and with it of the pitch, is arbitrary.
   double pitch_difference(const ScrewPair& pair) const;
 

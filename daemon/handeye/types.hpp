@@ -47,7 +47,7 @@ struct PoseNoise {
 
 /// What every method is given. Most use the movements, the likelihood the poses.
 struct HandEyeProblem {
-  std::span<const PosePair> poses;      ///< in order of time
+  std::span<const PosePair> poses;      ///< in order of time, without wrong ones (consensus.hpp)
   std::span<const Movement> movements;  ///< selected from them
   PoseNoise noise;                      ///< assumed; where it is estimated, the start
   bool estimate_noise{true};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/selection.hpp"
 
+#include <algorithm>
 #include <random>
+#include <set>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -67,6 +69,41 @@ TEST(Selection, LeavesOutWhatDoesNotTurnAlike) {
     const double eye_deg = deg_from_rad(rotation_angle_rad(movement.eye_j_from_eye_i.linear()));
     EXPECT_LT(std::abs(eye_deg - angle_deg(movement)), 2.0);
   }
+}
+
+TEST(Selection, UsesPosesEvenly) {
+  const auto poses = free_hand(100);
+  const Selection selection = select_movements(poses);
+  std::vector<std::size_t> uses(poses.size(), 0);
+  for (const auto& [i, j] : selection.pairs) {
+    EXPECT_LT(i, j);
+    ++uses[i];
+    ++uses[j];
+  }
+  // 500 movements of 100 poses: ten each, less where few large angles begin.
+  EXPECT_LE(*std::max_element(uses.begin(), uses.end()), 20U);
+  EXPECT_GE(std::count_if(uses.begin(), uses.end(), [](std::size_t n) { return n >= 5; }), 90);
+}
+
+TEST(Selection, LeavesWrongPosesOutAltogether) {
+  auto poses = free_hand(100);
+  const std::vector<std::size_t> wrong{5, 17, 18, 19, 60, 99};
+  for (const std::size_t k : wrong) poses[k].eye_from_scene.translation().x() += 40;
+  const Selection selection = select_movements(poses);
+  EXPECT_EQ(selection.wrong_poses, wrong);
+  for (const auto& [i, j] : selection.pairs) {
+    EXPECT_FALSE(std::binary_search(wrong.begin(), wrong.end(), i));
+    EXPECT_FALSE(std::binary_search(wrong.begin(), wrong.end(), j));
+  }
+}
+
+TEST(Selection, LooksAtAsManyPosesAsItMayOfALongSequence) {
+  const Selection selection = select_movements(free_hand(330));
+  std::set<std::size_t> poses;
+  for (const auto& [i, j] : selection.pairs) poses.insert({i, j});
+  EXPECT_GT(poses.size(), 180U);
+  EXPECT_LE(poses.size(), 200U);
+  EXPECT_GT(*poses.rbegin(), 300U);
 }
 
 TEST(Selection, IsTheSameEveryTime) {

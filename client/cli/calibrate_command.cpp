@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "client/cli/commands.hpp"
+#include "client/cli/eye_options.hpp"
 #include "client/cli/interrupt.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/result_output.hpp"
@@ -26,6 +27,7 @@ using Kind = CalibrationOutcome::Kind;
 struct CalibrateOptions {
   ClientOptions client;
   OutputOptions output;
+  EyeOptions eye;
   StartRequest start;
   WantedSigma wanted{0, 0};  ///< 0: the daemon's configured one
   double timeout_s{0};       ///< 0: the daemon's longest duration and time to solve on top
@@ -123,6 +125,7 @@ ExitCode report(const CalibrationOutcome& outcome, std::chrono::duration<double>
 }
 
 ExitCode run_calibrate(CalibrateOptions options) {
+  if (const auto board = chosen_board(options.eye)) options.start.board = to_string(*board);
   options.start.wanted_sigma_rotation_deg = options.wanted.rotation_deg;
   options.start.wanted_sigma_translation_mm = options.wanted.translation_mm;
   Interrupt interrupt;
@@ -147,6 +150,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
                    "body on the scope, the tracker's number from 0; default: the configured one")
       ->check(CLI::Range(0, 999))
       ->type_name("N");
+  add_eye_options(*command, options->eye);
   add_sigma_option(*command, options->wanted, "default: the configured one");
   command
       ->add_option("--max-duration", options->start.max_duration_s,

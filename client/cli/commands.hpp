@@ -23,6 +23,7 @@ void add_record_command(CLI::App& app, Action& action);
 void add_replay_command(CLI::App& app, Action& action);
 void add_solve_command(CLI::App& app, Action& action);
 void add_onestep_command(CLI::App& app, Action& action);
+void add_intrinsics_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 
 }  // namespace handeye::cli

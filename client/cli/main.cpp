@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   add_replay_command(app, action);
   add_solve_command(app, action);
   add_onestep_command(app, action);
+  add_intrinsics_command(app, action);
   add_compare_command(app, action);
   try {
     app.parse(argc, argv);

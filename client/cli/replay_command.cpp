@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "client/cli/commands.hpp"
+#include "client/cli/eye_options.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/result_output.hpp"
 #include "daemon/session/replay.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 struct ReplayCommandOptions {
   OutputOptions output;
+  EyeOptions eye;
   ReplayOptions replay;
   std::string camera_file;
   std::string mask_file;
@@ -23,6 +25,7 @@ struct ReplayCommandOptions {
 };
 
 ExitCode run_replay(ReplayCommandOptions options) {
+  options.replay.board = chosen_board(options.eye);
   if (!options.camera_file.empty()) options.replay.camera_file = options.camera_file;
   if (!options.mask_file.empty()) options.replay.mask_file = options.mask_file;
   ProgressLine progress;
@@ -44,6 +47,7 @@ void add_replay_command(CLI::App& app, Action& action) {
   command->add_option("recording", options->replay.recording, "LCM log (.lcm) or folder")
       ->required()
       ->type_name("RECORDING");
+  add_eye_options(*command, options->eye);
   command->add_option("--camera", options->camera_file, "intrinsics instead of the recording's")
       ->type_name("FILE");
   command

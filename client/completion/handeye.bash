@@ -31,6 +31,8 @@ _handeye_value() {
   case $option in
     --color) _handeye_words 'auto always never' "$current" ;;
     --mask) _handeye_files "$current" '*.png' ;;
+    --eye) _handeye_words 'sfm pattern' "$current" ;;
+    --output) _handeye_files "$current" '*.json' ;;
     --save | --truth | --start) _handeye_files "$current" '*.json' ;;
     --camera | --config | --intrinsics) _handeye_files "$current" ;;
     --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
@@ -46,7 +48,7 @@ _handeye_value() {
 
 _handeye() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands='calibrate status watch cancel pose record replay solve onestep compare'
+  local commands='calibrate status watch cancel pose record replay solve onestep intrinsics compare'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
     _handeye_words "$commands --help --version" "$current"
@@ -61,7 +63,7 @@ _handeye() {
   case $command in
     replay) _handeye_files "$current" '*.lcm' ;;
     solve) _handeye_files "$current" '*.csv' ;;
-    record) _handeye_files "$current" ;;
+    record | intrinsics) _handeye_files "$current" ;;
     onestep | compare) _handeye_files "$current" '*.json' ;;
   esac
 }

@@ -34,6 +34,7 @@ request_t make_request(std::int32_t action, std::int64_t target_request_id) {
   request.wanted_sigma_rotation_deg = 0;
   request.wanted_sigma_translation_mm = 0;
   request.max_duration_s = 0;
+  request.eye = request_t::EYE_SFM;
   return request;
 }
 
@@ -58,6 +59,8 @@ std::int64_t Client::start(const StartRequest& wanted) {
   request.wanted_sigma_rotation_deg = wanted.wanted_sigma_rotation_deg;
   request.wanted_sigma_translation_mm = wanted.wanted_sigma_translation_mm;
   request.max_duration_s = wanted.max_duration_s;
+  if (!wanted.board.empty()) request.eye = request_t::EYE_PATTERN;
+  request.board = wanted.board;
   return send(request);
 }
 

@@ -36,6 +36,7 @@ struct StartRequest {
   int body_id{-1};                        ///< the wire's number, from 0; -1: the configured body
   double wanted_sigma_rotation_deg{0};    ///< accept at or below; <= 0: the configured one
   double wanted_sigma_translation_mm{0};  ///< accept at or below; <= 0: the configured one
+  std::string board;  ///< the eye's poses from this board, as request_t says; empty: from the scene
   double max_duration_s{0};  ///< give up collecting after this; <= 0: the configured one
 };
 

@@ -84,9 +84,8 @@ std::optional<Solution> best_solution(const Problem& problem, const IntrinsicsOp
   if (!four) four = solve(problem, ordinary_camera(problem.size), cv::CALIB_FIX_K3);
   if (!four) return std::nullopt;
   const std::optional<Solution> five = solve(problem, four->matrix, 0);
-  constexpr int kK3 = 4;
-  const bool shown = five && std::abs(five->value(kK3)) >
-                                 options.min_distortion_sigmas * five->sigma.at<double>(4 + kK3);
+  const double kept = 1 - options.min_k3_gain;
+  const bool shown = five && five->rms_px * five->rms_px < kept * four->rms_px * four->rms_px;
   return shown ? five : four;
 }
 

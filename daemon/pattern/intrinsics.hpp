@@ -18,10 +18,12 @@ namespace handeye {
 inline constexpr std::size_t kFewestViews = 3;
 
 struct IntrinsicsOptions {
-  double max_focal_sigma{0.02};         ///< of the focal length, relative
-  double max_center_sigma{0.03};        ///< of the principal point, of the image's longer side
-  double max_reprojection_px{3.0};      ///< rms of all; beyond it the model or the board is wrong
-  double min_distortion_sigmas{3.0};    ///< k3 is kept at 0 unless it is so many sigma from it
+  double max_focal_sigma{0.02};     ///< of the focal length, relative
+  double max_center_sigma{0.03};    ///< of the principal point, of the image's longer side
+  double max_reprojection_px{3.0};  ///< rms of all; beyond it the model or the board is wrong
+  /// k3 is kept at 0 unless it explains this share of the squared reprojection errors: it fits
+  /// what is not the lens too, and then bends the image where there were no corners.
+  double min_k3_gain{0.1};
   double min_attitude_spread_deg{5.0};  ///< between the views' boards, to name the reason
 };
 

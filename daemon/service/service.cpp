@@ -138,12 +138,13 @@ void Service::carry_out(Session::Command command, const Request& request) {
 
 void Service::start_calibration() {
   const StartOptions& start = *session_.current();
-  spdlog::info("calibration {}: collecting, body {}, wanted sigma {} deg and {} mm, at most {} s",
-               start.request_id, start.body_id, start.wanted.rotation_deg,
-               start.wanted.translation_mm, start.max_duration_s);
+  spdlog::info(
+      "calibration {}: collecting, body {}, {}, wanted sigma {} deg and {} mm, at most {} s",
+      start.request_id, start.body_id, start.board ? to_string(*start.board) : "no board",
+      start.wanted.rotation_deg, start.wanted.translation_mm, start.max_duration_s);
   collecting_since_ns_ = monotonic_ns();
   tracker_.begin_collecting(start.body_id);
-  solver_.begin(start, vision_.begin_collecting());
+  solver_.begin(start, vision_.begin_collecting(start.board));
 }
 
 void Service::on_solver_events() {

@@ -66,9 +66,30 @@ double sigma_progress(const CalibrationProgress& progress, const WantedSigma& wa
   return std::clamp(ratio * ratio, 0.0, 1.0);
 }
 
+/// False, and why: the request names no eye that there is, or no board for it.
+bool read_board(const request_t& message, std::optional<Board>& board, std::string& problem) {
+  if (message.eye == request_t::EYE_SFM) {
+    if (!message.board.empty())
+      problem = "a board is for eye " + std::to_string(request_t::EYE_PATTERN);
+    return message.board.empty();
+  }
+  if (message.eye != request_t::EYE_PATTERN) {
+    problem = "unknown eye " + std::to_string(message.eye);
+    return false;
+  }
+  const auto parsed = parse_board(message.board);
+  if (const auto* found = std::get_if<Board>(&parsed)) {
+    board = *found;
+  } else {
+    problem = std::get<std::string>(parsed);
+  }
+  return board.has_value();
+}
+
 }  // namespace
 
 std::optional<Request> read_request(const request_t& message, std::string& problem) {
+  std::optional<Board> board;
   const auto action = action_of(message.action);
   if (message.protocol_version != request_t::VERSION) {
     problem = "this daemon speaks protocol version " + std::to_string(request_t::VERSION);
@@ -76,6 +97,8 @@ std::optional<Request> read_request(const request_t& message, std::string& probl
     problem = "unknown action " + std::to_string(message.action);
   } else if (message.request_id == 0) {
     problem = "request_id must not be 0";
+  } else if (!read_board(message, board, problem)) {
+    return std::nullopt;
   } else {
     return Request{
         .request_id = message.request_id,
@@ -83,7 +106,8 @@ std::optional<Request> read_request(const request_t& message, std::string& probl
         .target_request_id = message.target_request_id,
         .body_id = message.body_id,
         .wanted = {message.wanted_sigma_rotation_deg, message.wanted_sigma_translation_mm},
-        .max_duration_s = message.max_duration_s};
+        .max_duration_s = message.max_duration_s,
+        .board = board};
   }
   return std::nullopt;
 }

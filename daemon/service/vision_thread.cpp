@@ -26,7 +26,11 @@ void VisionThread::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-std::uint64_t VisionThread::begin_collecting() {
+std::uint64_t VisionThread::begin_collecting(const std::optional<Board>& board) {
+  {
+    const std::scoped_lock lock(board_mutex_);
+    board_ = board;
+  }
   frames_collected_ = 0;
   features_tracked_ = 0;
   collecting_ = ++last_calibration_;
@@ -45,7 +49,8 @@ void VisionThread::run(const std::stop_token& stop) {
 
 void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
   if (calibration != staged_calibration_) {
-    stage_ = std::make_unique<TrackingStage>(options_.mask.clone());
+    const std::scoped_lock lock(board_mutex_);
+    stage_ = make_image_stage(board_, options_.mask.clone());
     staged_calibration_ = calibration;
   }
   TrackedItem* item = tracked_.acquire();

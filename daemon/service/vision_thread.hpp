@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -12,7 +13,7 @@
 #include <handeye/image_t.hpp>
 
 #include "daemon/service/exchange.hpp"
-#include "daemon/session/tracking_stage.hpp"
+#include "daemon/session/image_stage.hpp"
 #include "drivers/camera.hpp"
 #include "protocol/bus.hpp"
 
@@ -25,7 +26,8 @@ struct TrackedItem {
   double tracking_ms{0};  ///< spent so far in this calibration
 };
 
-/// Takes frames from the camera; while collecting tracks features and hands them to the solver;
+/// Takes frames from the camera; while collecting tracks features, or finds a board's corners, and
+/// hands them to the solver;
 /// while recording publishes the frames of a camera that is not on LCM already.
 class VisionThread {
  public:
@@ -39,8 +41,9 @@ class VisionThread {
 
   void start();
 
-  /// From the main thread: returns the number that the TrackedItems of this calibration will carry.
-  std::uint64_t begin_collecting();
+  /// From the main thread: looks for a board, or, without one, follows features. Returns the number
+  /// that the TrackedItems of this calibration will carry.
+  std::uint64_t begin_collecting(const std::optional<Board>& board);
   void end_collecting() { collecting_ = 0; }
   void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
 
@@ -60,11 +63,13 @@ class VisionThread {
   image_t message_{};
   std::vector<int> jpeg_options_;
 
-  std::unique_ptr<TrackingStage> stage_;
+  std::unique_ptr<ImageStage> stage_;
   std::uint64_t staged_calibration_{0};
   TrackedFrame overflow_;
 
   std::uint64_t last_calibration_{0};
+  std::mutex board_mutex_;  ///< taken once per calibration
+  std::optional<Board> board_;
   std::atomic<std::uint64_t> collecting_{0};  ///< the running calibration's number; 0: none
   std::atomic<std::int64_t> record_until_ns_{0};
   std::atomic<int> features_tracked_{0};

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/session/estimate.hpp"
 #include "daemon/session/guidance.hpp"
 #include "daemon/session/method_comparison.hpp"
 #include "daemon/session/stopwatch.hpp"
@@ -15,6 +14,10 @@ namespace {
 
 // On the way an estimate is only for orientation; so many frames give it fast enough.
 constexpr std::size_t kFramesOnTheWay = 150;
+
+constexpr std::string_view kStoodStillAdvice =
+    "The scope stood still in every image, so the time offset between camera and tracker could not "
+    "be found and was not needed: it was taken to be 0.";
 
 std::vector<RegisteredFrame> thinned(const std::vector<RegisteredFrame>& frames,
                                      std::size_t at_most) {
@@ -37,8 +40,9 @@ std::vector<PosePair> pose_pairs(const Estimate& estimate) {
 /// Every method's answer to the same poses; the last is the one that this calibration gives.
 std::vector<MethodResult> methods_of(const Estimate& estimate, const PoseNoise& noise) {
   const std::vector<PosePair> pairs = pose_pairs(estimate);
-  const std::span<const Method> all = methods(ScaleMode::kUnknown);
-  std::vector<MethodResult> results = compare_methods(all.first(all.size() - 1), pairs, noise);
+  const std::span<const Method> all = methods(estimate.scale);
+  std::vector<MethodResult> results =
+      compare_methods(all.first(all.size() - 1), pairs, noise, estimate.scale);
   MethodResult answer{.name = std::string(all.back().name)};
   if (estimate.likelihood) {
     answer.solution = estimate.likelihood->solution;
@@ -72,7 +76,7 @@ void write_estimate(const Estimate& estimate, const PoseNoise& noise, Calibratio
 
 Calibration::Calibration(const CalibrationOptions& options)
     : options_(options),
-      reconstruction_(options.camera, options.reconstruction),
+      eye_(make_eye_source(options.start.board, options.camera, options.reconstruction)),
       hand_({.capacity = options.hand_capacity}) {}
 
 void Calibration::add_hand(const HandSample& sample) {
@@ -86,25 +90,26 @@ void Calibration::add_frame(const TrackedFrame& frame) {
   ++frames_;
   features_recent_ = static_cast<int>(frame.observations.size());
   features_ += features_recent_;
-  state_ = reconstruction_.add(frame);
+  state_ = eye_->add(frame);
   reconstruction_ms_ += stopwatch.elapsed_ms();
 }
 
 CalibrationProgress Calibration::progress() const {
   CalibrationProgress progress;
-  progress.keyframes = reconstruction_.keyframes();
+  progress.keyframes = eye_->keyframes();
   progress.rotation_coverage_deg = hand_path_.rotation_coverage_deg();
   progress.translation_coverage_mm = hand_path_.translation_coverage_mm();
-  progress.guidance = guidance_for({.any_frame = frames_ > 0,
+  progress.guidance = guidance_for({.board = options_.start.board,
+                                    .board_seen = eye_->keyframes() > 0,
+                                    .any_frame = frames_ > 0,
                                     .hand_hidden = hand_hidden_,
                                     .features_recent = static_cast<double>(features_recent_),
                                     .state = state_,
                                     .rotation_coverage_deg = progress.rotation_coverage_deg,
                                     .second_axis_deg = hand_path_.second_axis_deg(),
                                     .translation_coverage_mm = progress.translation_coverage_mm});
-  const std::vector<RegisteredFrame> frames =
-      thinned(reconstruction_.current().frames, kFramesOnTheWay);
-  const Estimate estimate_so_far = estimate(frames, hand_, options_.noise);
+  const std::vector<RegisteredFrame> frames = thinned(eye_->current().frames, kFramesOnTheWay);
+  const Estimate estimate_so_far = estimate(frames, hand_, options_.noise, eye_->scale());
   if (estimate_so_far.likelihood) {
     progress.sigma_rotation_deg = estimate_so_far.likelihood->sigma_rotation_deg();
     progress.sigma_translation_mm = estimate_so_far.likelihood->sigma_translation_mm();
@@ -116,7 +121,7 @@ CalibrationResult Calibration::solve() {
   CalibrationResult result = begin_result();
   const Reconstruction reconstruction = reconstruct(result);
   const Stopwatch stopwatch;
-  const Estimate found = estimate(reconstruction.frames, hand_, options_.noise);
+  const Estimate found = estimate(reconstruction.frames, hand_, options_.noise, eye_->scale());
   write_estimate(found, options_.noise, result);
   const Finding finding = conclude({.frames_received = frames_,
                                     .hand_path = hand_path_.room_from_hand(),
@@ -128,9 +133,17 @@ CalibrationResult Calibration::solve() {
     write_covariance(finding.judgement->covariance, result);
   result.reason = finding.reason;
   result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
-  result.advice = reason_advice(result.reason);
+  result.advice = advice_for(result.reason, found);
   result.timings_ms.handeye = stopwatch.elapsed_ms();
   return result;
+}
+
+std::string Calibration::advice_for(Reason reason, const Estimate& found) const {
+  const std::optional<Board>& board = options_.start.board;
+  std::string advice = board ? reason_advice(reason, *board) : std::string(reason_advice(reason));
+  if (!found.stood_still || !found.likelihood) return advice;
+  if (!advice.empty()) advice += ' ';
+  return advice + std::string(kStoodStillAdvice);
 }
 
 CalibrationResult Calibration::begin_result() const {
@@ -138,6 +151,7 @@ CalibrationResult Calibration::begin_result() const {
   result.request_id = options_.start.request_id;
   result.body_id = options_.start.body_id;
   result.wanted = options_.start.wanted;
+  result.board = options_.start.board;
   result.camera = options_.camera;
   result.frames.received = frames_;
   if (frames_ > 0) {
@@ -148,7 +162,7 @@ CalibrationResult Calibration::begin_result() const {
 
 Reconstruction Calibration::reconstruct(CalibrationResult& result) {
   const Stopwatch stopwatch;
-  Reconstruction reconstruction = reconstruction_.finish();
+  Reconstruction reconstruction = eye_->finish();
   reconstruction_ms_ += stopwatch.elapsed_ms();
   result.frames.used = static_cast<std::int64_t>(reconstruction.frames.size());
   result.frames.keyframes =

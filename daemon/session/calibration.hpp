@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/handeye/types.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
+#include "daemon/session/estimate.hpp"
+#include "daemon/session/eye_source.hpp"
 #include "daemon/session/hand_path.hpp"
 #include "daemon/session/result.hpp"
 #include "daemon/session/session.hpp"
@@ -16,7 +19,7 @@
 namespace handeye {
 
 struct CalibrationOptions {
-  StartOptions start;
+  StartOptions start;  ///< with a board: the eye's poses come from it
   CameraModel camera;
   PoseNoise noise;  ///< of the tracker; the eye's is found from the data
   ReconstructionOptions reconstruction;
@@ -33,7 +36,7 @@ struct CalibrationProgress {
   std::string guidance;  ///< the one thing to do next, for the person with the scope
 };
 
-/// One calibration from its streams to its result: reconstruction, time offset, hand-eye, verdict.
+/// One calibration from its streams to its result: the eye's poses, time offset, hand-eye, verdict.
 /// Knows no thread and no clock but the stamps it is given; the same in the daemon and in a replay,
 /// and the same answer for the same input, bit for bit (timings aside). One thread.
 class Calibration {
@@ -42,7 +45,8 @@ class Calibration {
 
   /// Samples of the hand, in order of time.
   void add_hand(const HandSample& sample);
-  /// Tracked frames, in order of time; milliseconds, now and then some ten.
+  /// What an ImageStage of the same board, or of none, saw; in order of time. Milliseconds, now and
+  /// then some ten.
   void add_frame(const TrackedFrame& frame);
 
   /// An estimate from what is there, without the global adjustment: some ten milliseconds.
@@ -54,10 +58,11 @@ class Calibration {
 
  private:
   CalibrationResult begin_result() const;
+  std::string advice_for(Reason reason, const Estimate& found) const;
   Reconstruction reconstruct(CalibrationResult& result);
 
   CalibrationOptions options_;
-  IncrementalReconstruction reconstruction_;
+  std::unique_ptr<EyeSource> eye_;
   ReconstructionState state_{ReconstructionState::kTooFewFeatures};
   PoseBuffer hand_;
   HandPath hand_path_;

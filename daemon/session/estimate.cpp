@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/estimate.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daemon/session/stopwatch.hpp"
@@ -11,6 +13,10 @@ namespace {
 // The likelihood is linear in the offset within a few milliseconds; look up again beyond this.
 constexpr double kOffsetSettled_s = 0.0005;
 constexpr int kMostRounds = 4;
+// Longer than camera and tracker are apart in any set-up without a fault.
+constexpr std::int64_t kRest_ns = 150'000'000;
+// Of a difference of two poses, three axes each: passed by chance once in some thousands.
+constexpr double kRestSigmas = 6.0;
 
 std::optional<TimeOffset> correlate(std::span<const RegisteredFrame> frames,
                                     const PoseBuffer& hand) {
@@ -20,6 +26,28 @@ std::optional<TimeOffset> correlate(std::span<const RegisteredFrame> frames,
     eye.push_back({frame.timestamp_ns, frame.eye_from_scene});
   }
   return correlate_angular_speed(hand, eye);
+}
+
+/// Whether the hand was where it was at the frame for as long as an offset may reach, before and
+/// after; frames at which it was not seen do not count.
+bool rested_at(std::int64_t timestamp_ns, const PoseBuffer& hand, const PoseNoise& noise) {
+  const HandLookup at_frame = hand.lookup(timestamp_ns);
+  if (at_frame.status != LookupStatus::kOk) return true;
+  return std::ranges::all_of(std::array{-kRest_ns, kRest_ns}, [&](std::int64_t shift_ns) {
+    const HandLookup beside = hand.lookup(timestamp_ns + shift_ns);
+    return beside.status == LookupStatus::kOk &&
+           rotation_angle_rad(beside.room_from_hand.linear(), at_frame.room_from_hand.linear()) <
+               kRestSigmas * noise.hand_rotation_rad &&
+           (beside.room_from_hand.translation() - at_frame.room_from_hand.translation()).norm() <
+               kRestSigmas * noise.hand_translation_mm;
+  });
+}
+
+bool stood_still(std::span<const RegisteredFrame> frames, const PoseBuffer& hand,
+                 const PoseNoise& noise) {
+  return !frames.empty() && std::ranges::all_of(frames, [&](const RegisteredFrame& frame) {
+    return rested_at(frame.timestamp_ns, hand, noise);
+  });
 }
 
 }  // namespace
@@ -40,16 +68,20 @@ std::vector<HandEyeObservation> observe(std::span<const RegisteredFrame> frames,
 }
 
 Estimate estimate(std::span<const RegisteredFrame> frames, const PoseBuffer& hand,
-                  const PoseNoise& noise) {
+                  const PoseNoise& noise, ScaleMode scale) {
   const Stopwatch stopwatch;
   Estimate result;
+  result.scale = scale;
   result.correlation = correlate(frames, hand);
   if (result.correlation) {
     result.time_offset_s = result.correlation->time_offset_s;
     result.time_offset_sigma_s = result.correlation->sigma_s;
+  } else {
+    result.stood_still = stood_still(frames, hand, noise);
   }
   MaximumLikelihoodOptions& options = result.options;
   options.noise = noise;
+  options.estimate_scale = scale == ScaleMode::kUnknown;
   // Without a correlation there was too little rotation to refine an offset either.
   options.estimate_time_offset = result.correlation.has_value();
   for (int round = 0; round < kMostRounds; ++round) {

@@ -17,10 +17,12 @@ struct Estimate {
   /// The frames for which the tracker saw the hand, at the final time offset.
   std::vector<HandEyeObservation> observations;
   std::optional<TimeOffset> correlation;  ///< nothing: not found; the offset below starts from 0
-  double time_offset_s{0};                ///< camera stamp = tracker stamp + this; refined
+  bool stood_still{false};  ///< no correlation, and none needed: the hand rested at every frame
+  double time_offset_s{0};  ///< camera stamp = tracker stamp + this; refined
   double time_offset_sigma_s{0};
   std::optional<MaximumLikelihoodResult> likelihood;  ///< nothing: the data do not determine any
   MaximumLikelihoodOptions options;                   ///< it was solved with
+  ScaleMode scale{ScaleMode::kUnknown};               ///< of the eye's translations
   double time_ms{0};
 };
 
@@ -29,8 +31,9 @@ std::vector<HandEyeObservation> observe(std::span<const RegisteredFrame> frames,
                                         const PoseBuffer& hand, double time_offset_s);
 
 /// Finds the time offset by correlation, solves by maximum likelihood with the offset free, and
-/// looks the hand up again until the offset stays. Deterministic.
+/// looks the hand up again until the offset stays. Without a correlation the offset is held at 0,
+/// which is as good as any where the hand rested at every frame. Deterministic.
 Estimate estimate(std::span<const RegisteredFrame> frames, const PoseBuffer& hand,
-                  const PoseNoise& noise);
+                  const PoseNoise& noise, ScaleMode scale = ScaleMode::kUnknown);
 
 }  // namespace handeye

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "daemon/geometry/board.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 
 namespace handeye {
 
 /// What is known while collecting, for saying what to do next.
 struct Situation {
+  std::optional<Board> board;  ///< to be looked at; nothing: whatever is in view
+  bool board_seen{false};      ///< it could be located at least once
   bool any_frame{false};
   bool hand_hidden{false};    ///< in the tracker's last samples
-  double features_recent{0};  ///< tracked in the last frame
+  double features_recent{0};  ///< tracked in the last frame; of a board: its corners
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
   double rotation_coverage_deg{0};
   /// Rotation about the axis that was turned about second most [deg, rms]: both are needed.

@@ -16,8 +16,9 @@ MethodResult run_method(const Method& method, const HandEyeProblem& problem) {
 }
 
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
-                                          std::span<const PosePair> poses, const PoseNoise& noise) {
-  const Selection selection = select_movements(poses);
+                                          std::span<const PosePair> poses, const PoseNoise& noise,
+                                          ScaleMode scale) {
+  const Selection selection = select_movements(poses, {.scale = scale});
   const HandEyeProblem problem{.poses = poses, .movements = selection.movements, .noise = noise};
   std::vector<MethodResult> results;
   for (const Method& method : methods) results.push_back(run_method(method, problem));

@@ -15,6 +15,7 @@ MethodResult run_method(const Method& method, const HandEyeProblem& problem);
 
 /// Each method's answer to the same poses, with residuals and time.
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
-                                          std::span<const PosePair> poses, const PoseNoise& noise);
+                                          std::span<const PosePair> poses, const PoseNoise& noise,
+                                          ScaleMode scale = ScaleMode::kUnknown);
 
 }  // namespace handeye

@@ -62,6 +62,19 @@ std::string_view reason_advice(Reason reason) {
   return text_of(reason).advice;
 }
 
+std::string reason_advice(Reason reason, const Board& board) {
+  if (reason == Reason::kTooFewFeatures) {
+    return "The board " + to_string(board) +
+           " was not seen, or in too few images: hold it wholly in view, well lit, and check that "
+           "its counts are those of the inner corners (ChArUco: of the squares).";
+  }
+  if (reason == Reason::kUncertain) {
+    return "The result is not certain enough: move longer, with larger tilts, and check the "
+           "board's lengths and the camera's intrinsics.";
+  }
+  return std::string(reason_advice(reason));
+}
+
 Reason reason_from_word(std::string_view word) {
   for (const ReasonText& text : kReasons) {
     if (text.word == word) return text.reason;

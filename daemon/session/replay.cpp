@@ -9,8 +9,8 @@
 
 #include "daemon/session/calibration.hpp"
 #include "daemon/session/hand_stream.hpp"
+#include "daemon/session/image_stage.hpp"
 #include "daemon/session/stopwatch.hpp"
-#include "daemon/session/tracking_stage.hpp"
 #include "drivers/recording/recording.hpp"
 #include "protocol/exit_codes.hpp"
 
@@ -51,6 +51,7 @@ CalibrationOptions calibration_options(const ReplayOptions& options, const Camer
   CalibrationOptions calibration;
   calibration.start.body_id = std::max(options.body_id, 0);
   calibration.start.wanted = options.wanted;
+  calibration.start.board = options.board;
   calibration.camera = camera;
   calibration.hand_capacity = std::max<std::size_t>(datagrams, 1);
   return calibration;
@@ -82,7 +83,7 @@ CalibrationResult replay(const ReplayOptions& options) {
   const Stopwatch stopwatch;
   Recording recording = open_recording(options.recording);
   const CameraModel camera = camera_for(recording, options);
-  TrackingStage tracking(mask_for(recording, options, camera));
+  const auto images = make_image_stage(options.board, mask_for(recording, options, camera));
   RecordedHand hand(recording.datagrams, options.body_id);
   Calibration calibration(calibration_options(options, camera, recording.datagrams.size()));
 
@@ -93,7 +94,7 @@ CalibrationResult replay(const ReplayOptions& options) {
   while (recording.camera->grab(frame, std::chrono::milliseconds(0)) == GrabStatus::kFrame) {
     require_size(frame, camera, options);
     hand.feed_until(frame.timestamp_ns, calibration);
-    tracking.process(frame, tracked);
+    images->process(frame, tracked);
     calibration.add_frame(tracked);
     if (options.progress && ++frames_done % kProgressEvery == 0) options.progress(frames_done);
   }
@@ -102,7 +103,7 @@ CalibrationResult replay(const ReplayOptions& options) {
   CalibrationResult result = calibration.solve();
   result.body_id = hand.body_id();
   result.frames.dropped = static_cast<std::int64_t>(recording.camera->counters().dropped);
-  result.timings_ms.tracking = tracking.time_ms();
+  result.timings_ms.tracking = images->time_ms();
   result.timings_ms.total = stopwatch.elapsed_ms();
   return result;
 }

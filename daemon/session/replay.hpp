@@ -15,6 +15,7 @@ struct ReplayOptions {
   std::optional<std::filesystem::path> mask_file;    ///< overrides the recording's mask.png
   int body_id{-1};                                   ///< -1: the first body that is seen
   WantedSigma wanted;
+  std::optional<Board> board;  ///< the eye's poses from it; nothing: from a reconstruction
   /// Called now and then with the number of frames done; for progress on a terminal. May be empty.
   std::function<void(std::int64_t frames_done)> progress;
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/geometry/board.hpp"
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/pose.hpp"
 #include "daemon/handeye/types.hpp"
@@ -40,6 +41,8 @@ Reason reason_from_word(std::string_view word);
 
 /// What the person holding the scope can do about it; one sentence. Empty for kNone.
 std::string_view reason_advice(Reason reason);
+/// The same for a calibration with a board, which it names.
+std::string reason_advice(Reason reason, const Board& board);
 
 /// How good an answer has to be to be accepted. Sigma: square root of the trace of the block.
 struct WantedSigma {
@@ -69,6 +72,7 @@ struct CalibrationResult {
   Reason reason{Reason::kNone};
   std::string advice;
   WantedSigma wanted;
+  std::optional<Board> board;  ///< the eye's poses came from it; nothing: from a reconstruction
 
   bool has_estimate{false};  ///< false: the block below is meaningless
   HandEyeSolution solution;

@@ -102,6 +102,8 @@ Json to_json(const CalibrationResult& result) {
   json["body_id"] = result.body_id;
   json["wanted_sigma"] = {{"rotation_deg", result.wanted.rotation_deg},
                           {"translation_mm", result.wanted.translation_mm}};
+  json["eye"] = result.board ? "pattern" : "sfm";
+  if (result.board) json["board"] = to_string(*result.board);
   add_estimate(json, result);
   json["camera"] = camera_json(result.camera, result.camera_source);
   json["residuals"] = residuals_json(result.residuals);

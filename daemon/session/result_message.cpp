@@ -111,6 +111,13 @@ void read_figures(const result_t& message, CalibrationResult& result) {
                        message.time_handeye_ms, message.time_total_ms};
 }
 
+/// A daemon sends nothing else but boards.
+std::optional<Board> board_from_message(const std::string& text) {
+  const auto parsed = parse_board(text);
+  if (const auto* board = std::get_if<Board>(&parsed)) return *board;
+  return std::nullopt;
+}
+
 }  // namespace
 
 result_t to_message(const CalibrationResult& result) {
@@ -140,6 +147,7 @@ result_t to_message(const CalibrationResult& result) {
   for (const MethodResult& method : result.methods) {
     message.methods.push_back(method_message(method));
   }
+  if (result.board) message.board = to_string(*result.board);
   message.num_methods = static_cast<std::int32_t>(message.methods.size());
   return message;
 }
@@ -166,6 +174,7 @@ CalibrationResult from_message(const result_t& message) {
   }
   read_camera(message, result);
   read_figures(message, result);
+  result.board = board_from_message(message.board);
   for (const method_result_t& method : message.methods) {
     result.methods.push_back(method_from_message(method));
   }

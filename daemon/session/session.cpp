@@ -87,7 +87,8 @@ Ack Session::decide_start(const Request& request, Command& command) {
       .body_id = request.body_id >= 0 ? request.body_id : defaults_.body_id,
       .wanted = {or_default(request.wanted.rotation_deg, defaults_.wanted.rotation_deg),
                  or_default(request.wanted.translation_mm, defaults_.wanted.translation_mm)},
-      .max_duration_s = or_default(request.max_duration_s, defaults_.max_duration_s)};
+      .max_duration_s = or_default(request.max_duration_s, defaults_.max_duration_s),
+      .board = request.board};
   state_ = SessionState::kCollecting;
   command = Command::kStart;
   return {request.request_id, AckCode::kTaken, ""};

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/geometry/board.hpp"
 #include "daemon/session/result.hpp"
 
 namespace handeye {
@@ -22,6 +23,7 @@ struct Request {
   int body_id{-1};                    ///< start: -1 is the configured one
   WantedSigma wanted{0, 0};           ///< start: a value <= 0 is the configured one
   double max_duration_s{0};           ///< start, record: <= 0 is the configured one
+  std::optional<Board> board;         ///< start: the eye's poses from it; nothing: reconstruct
 };
 
 enum class AckCode { kTaken, kBusy, kBadRequest, kNothingToDo };
@@ -39,6 +41,7 @@ struct StartOptions {
   int body_id{0};
   WantedSigma wanted;
   double max_duration_s{30};
+  std::optional<Board> board;  ///< the eye's poses from it; nothing: from a reconstruction
 };
 
 struct SessionDefaults {

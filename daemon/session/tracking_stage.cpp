@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "daemon/session/stopwatch.hpp"
 #include "daemon/tracking/field_of_view.hpp"
 
 namespace handeye {
@@ -19,11 +18,9 @@ TrackingStage::TrackingStage(cv::Mat mask)
       mask_(std::move(mask)),
       mask_attempts_left_(mask_.empty() ? kMaskAttempts : 0) {}
 
-void TrackingStage::process(const Frame& frame, TrackedFrame& tracked) {
-  const Stopwatch stopwatch;
+void TrackingStage::look(const Frame& frame, TrackedFrame& tracked) {
   find_mask(frame.grey);
   tracker_->track(frame.grey, mask_, frame.timestamp_ns, tracked);
-  time_ms_ += stopwatch.elapsed_ms();
 }
 
 void TrackingStage::find_mask(const cv::Mat& grey) {

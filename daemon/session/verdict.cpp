@@ -4,13 +4,21 @@
 namespace handeye {
 namespace {
 
-// Fewer poses than this determine nothing, whatever they are.
+// Fewer poses than this determine nothing, whatever they are. Of a reconstruction so few would be
+// an accident; each view of a board stands by itself.
 constexpr std::size_t kFewestPoses = 10;
+constexpr std::size_t kFewestBoardPoses = 4;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault.
 constexpr double kSeenEnough = 0.5;
 
-/// Why there is nothing to solve from: the motion's fault before the images'.
+bool with_board(const Evidence& evidence) {
+  return evidence.estimate.scale == ScaleMode::kKnown;
+}
+
+/// Why there is nothing to solve from: the motion's fault before the images', unless there was a
+/// board to be seen whatever the motion.
 Reason reason_without_reconstruction(const Evidence& evidence) {
+  if (with_board(evidence)) return Reason::kTooFewFeatures;
   const bool no_parallax = evidence.reconstruction.state == ReconstructionState::kNoParallax;
   const MotionProblem problem =
       classify_hand_motion(evidence.hand_path, evidence.noise, no_parallax);
@@ -33,7 +41,9 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
       problem == MotionProblem::kNoParallax || problem == MotionProblem::kSingleAxis;
   if (names_the_motion) return reason_of(problem);
   // At a wrong offset the rest of the judgement means nothing.
-  if (!evidence.estimate.correlation) return Reason::kClockUnstable;
+  if (!evidence.estimate.correlation && !evidence.estimate.stood_still) {
+    return Reason::kClockUnstable;
+  }
   const auto seen = static_cast<double>(evidence.estimate.observations.size());
   const auto registered = static_cast<double>(evidence.reconstruction.frames.size());
   if (problem == MotionProblem::kUncertain && seen < kSeenEnough * registered) {
@@ -67,10 +77,11 @@ Reason reason_of(MotionProblem problem) {
 Finding conclude(const Evidence& evidence) {
   if (evidence.frames_received == 0) return {Reason::kCameraLost, {}};
   if (evidence.hand_path.empty()) return {Reason::kTrackerLost, {}};
-  if (evidence.reconstruction.frames.size() < kFewestPoses) {
+  const std::size_t fewest = with_board(evidence) ? kFewestBoardPoses : kFewestPoses;
+  if (evidence.reconstruction.frames.size() < fewest) {
     return {reason_without_reconstruction(evidence), {}};
   }
-  if (evidence.estimate.observations.size() < kFewestPoses) return {Reason::kTrackerLost, {}};
+  if (evidence.estimate.observations.size() < fewest) return {Reason::kTrackerLost, {}};
   const Judgement judgement = judged(evidence);
   return {reason_after(judgement.problem, evidence), judgement};
 }

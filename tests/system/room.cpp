@@ -32,11 +32,16 @@ Room::Room()
 
 testing::AssertionResult Room::start_simulator(const SimulatorSettings& settings) {
   for (const char* file : {"camera.json", "truth.json"}) std::filesystem::remove(path(file));
-  simulator_ = std::make_unique<Process>(std::vector<std::string>{
-      handeye_sim(), "run", "--seed", std::to_string(settings.seed), "--motion", settings.motion,
-      "--rate", fmt::format("{}", settings.camera_rate_hz), "--tracker-port",
-      std::to_string(tracker_port()), "--lcm-url", lcm_url_, "--camera-out", path("camera.json"),
-      "--truth-out", path("truth.json")});
+  std::vector<std::string> words{handeye_sim(),    "run",
+                                 "--seed",         std::to_string(settings.seed),
+                                 "--motion",       settings.motion,
+                                 "--rate",         fmt::format("{}", settings.camera_rate_hz),
+                                 "--tracker-port", std::to_string(tracker_port()),
+                                 "--lcm-url",      lcm_url_,
+                                 "--camera-out",   path("camera.json"),
+                                 "--truth-out",    path("truth.json")};
+  if (!settings.board.empty()) words.insert(words.end(), {"--board", settings.board});
+  simulator_ = std::make_unique<Process>(words);
   const auto deadline = steady_clock::now() + kStartTimeout;
   while (!ends_with_brace(path("camera.json")) || !ends_with_brace(path("truth.json"))) {
     if (simulator_->has_ended() || steady_clock::now() > deadline) {

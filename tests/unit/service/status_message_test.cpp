@@ -61,10 +61,35 @@ TEST(ReadRequest, RejectsNonsenseInWords) {
   }
   request_t other_version = good_request();
   other_version.protocol_version = request_t::VERSION + 1;
-  EXPECT_THAT(problem_with(other_version), HasSubstr("version 1"));
+  EXPECT_THAT(problem_with(other_version), HasSubstr("version 2"));
   request_t no_id = good_request();
   no_id.request_id = 0;
   EXPECT_THAT(problem_with(no_id), HasSubstr("request_id"));
+}
+
+TEST(ReadRequest, TakesABoard) {
+  request_t message = good_request();
+  std::string problem;
+  EXPECT_FALSE(read_request(message, problem)->board);
+  message.eye = request_t::EYE_PATTERN;
+  message.board = "charuco:8x6:6:4.5:DICT_4X4_50";
+  const auto request = read_request(message, problem);
+  ASSERT_TRUE(request && request->board) << problem;
+  EXPECT_EQ(to_string(*request->board), message.board);
+}
+
+TEST(ReadRequest, RejectsAnEyeWithoutItsBoard) {
+  request_t message = good_request();
+  message.board = "chessboard:9x6:4";
+  EXPECT_THAT(problem_with(message), HasSubstr("board"));
+  message.eye = request_t::EYE_PATTERN;
+  message.board = "";
+  EXPECT_THAT(problem_with(message), HasSubstr("chessboard:COLSxROWS:SQUARE_MM"));
+  message.board = "chessboard:9y6:4";
+  EXPECT_THAT(problem_with(message), HasSubstr("9x6"));
+  message.board = "";
+  message.eye = 2;
+  EXPECT_THAT(problem_with(message), HasSubstr("eye 2"));
 }
 
 TEST(WriteSession, TellsStateRequestAndAcknowledgements) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "daemon/pattern/board_detector.hpp"
+#include "daemon/session/image_stage.hpp"
+
+namespace handeye {
+
+/// Finds a board's corners in every image, as BoardEye takes them.
+class BoardStage final : public ImageStage {
+ public:
+  explicit BoardStage(const Board& board) : detector_(make_board_detector(board)) {}
+
+ private:
+  void look(const Frame& frame, TrackedFrame& tracked) override;
+
+  std::unique_ptr<BoardDetector> detector_;
+  std::vector<BoardCorner> corners_;
+  std::int64_t next_index_{0};
+};
+
+}  // namespace handeye

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "daemon/geometry/board.hpp"
+#include "daemon/tracking/feature_tracker.hpp"
+#include "drivers/camera.hpp"
+
+namespace handeye {
+
+/// From images to what an EyeSource takes, for one calibration. The same in the live daemon and in
+/// a replay. One thread.
+class ImageStage {
+ public:
+  ImageStage() = default;
+  ImageStage(const ImageStage&) = delete;
+  ImageStage& operator=(const ImageStage&) = delete;
+  virtual ~ImageStage() = default;
+
+  /// Frames in order of time, all of one size.
+  void process(const Frame& frame, TrackedFrame& tracked);
+
+  /// Wall time spent so far [ms].
+  double time_ms() const { return time_ms_; }
+
+ private:
+  virtual void look(const Frame& frame, TrackedFrame& tracked) = 0;
+
+  double time_ms_{0};
+};
+
+/// Features of whatever is in view, or, given a board, its corners. `mask`: CV_8UC1, 255 = usable;
+/// empty: it is found in the first images. A board needs none.
+std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask);
+
+}  // namespace handeye

@@ -6,7 +6,7 @@
 namespace handeye {
 namespace {
 
-constexpr double kPriorPoses = 5;    // so many poses' worth is the assumed noise
+constexpr double kPriorPoses = 1;    // so many poses' worth is the assumed noise
 constexpr int kMostIterations = 30;  // of noise and robust weights
 constexpr double kSettled = 1e-4;    // relative change of every variance
 

@@ -9,8 +9,8 @@ namespace handeye {
 
 /// Variance components: the noise that explains the residuals of one pose each (not whitened), as
 /// far as they are not outliers (Huber's proposal 2, `huber` the norm beyond which a whitened
-/// residual counts no more), by Fisher scoring from `start`. `assumed` weighs as much as five
-/// poses; the residuals are fewer by what `parameters` unknowns have absorbed.
+/// residual counts no more), by Fisher scoring from `start`. `assumed` weighs as much as one
+/// pose; the residuals are fewer by what `parameters` unknowns have absorbed.
 ResidualNoise::Variances fit_noise(const std::vector<Vector6d>& residuals,
                                    const ResidualNoise& noise, int parameters, double huber,
                                    const ResidualNoise::Variances& assumed,

@@ -23,12 +23,14 @@ std::string row(std::string_view label, std::string_view value) {
 std::string verdict_text(const CalibrationResult& result, std::string_view rests_on,
                          const Palette& palette) {
   const std::string about = palette.dim("  " + std::string(rests_on));
-  if (result.verdict == Verdict::kAccepted) return palette.green("ACCEPTED") + about + "\n";
+  const std::string advice = result.advice.empty() ? "" : "  " + printable(result.advice) + "\n";
+  if (result.verdict == Verdict::kAccepted) {
+    return palette.green("ACCEPTED") + about + "\n" + advice;
+  }
   const bool cancelled = result.verdict == Verdict::kCancelled;
   std::string text = palette.red(cancelled ? "CANCELLED" : "REFUSED");
   if (!cancelled) text += ": " + palette.bold(reason_word(result.reason));
-  text += about + "\n";
-  if (!result.advice.empty()) text += "  " + printable(result.advice) + "\n";
+  text += about + "\n" + advice;
   if (result.has_estimate) {
     text += "  " + palette.red("The estimate below must not be used.") + "\n";
   }

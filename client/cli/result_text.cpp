@@ -46,14 +46,23 @@ std::string methods_text(const CalibrationResult& result, const Palette& palette
   return text + "\n";
 }
 
+std::string features_text(const CalibrationResult& result) {
+  if (result.board) {
+    return row("board",
+               fmt::format("{}: {:.0f} of {} corners seen on average", to_string(*result.board),
+                           result.features.tracked_mean, result.board->corners_mm().size()));
+  }
+  return row("features", fmt::format("{:.0f} tracked on average, {} points reconstructed",
+                                     result.features.tracked_mean, result.features.points));
+}
+
 std::string basis_text(const CalibrationResult& result) {
   const auto& frames = result.frames;
   const auto& timings = result.timings_ms;
   return row("frames",
              fmt::format("{} received, {} used, {} keyframes, {} dropped", frames.received,
                          frames.used, frames.keyframes, frames.dropped)) +
-         row("features", fmt::format("{:.0f} tracked on average, {} points reconstructed",
-                                     result.features.tracked_mean, result.features.points)) +
+         features_text(result) +
          row("time spent",
              fmt::format("tracking {:.0f} ms, reconstruction {:.0f} ms, hand-eye {:.0f} ms, "
                          "total {:.0f} ms",

@@ -8,7 +8,8 @@ namespace {
 // an accident; each view of a board stands by itself.
 constexpr std::size_t kFewestPoses = 10;
 constexpr std::size_t kFewestBoardPoses = 4;
-// Below this share of frames with a visible hand, an uncertain answer is the tracker's fault.
+// Below this share of frames with a visible hand, an uncertain answer is the tracker's fault; of
+// frames with a visible board, it is for want of the board.
 constexpr double kSeenEnough = 0.5;
 
 bool with_board(const Evidence& evidence) {
@@ -34,8 +35,23 @@ Judgement judged(const Evidence& evidence) {
   return judge(evidence.estimate.observations, evidence.estimate.likelihood, options);
 }
 
+/// Whether the scope moved well enough, and the board was out of view while it did.
+bool looked_past_board(const Evidence& evidence) {
+  const auto registered = static_cast<double>(evidence.reconstruction.frames.size());
+  if (!with_board(evidence) ||
+      registered >= kSeenEnough * static_cast<double>(evidence.frames_received)) {
+    return false;
+  }
+  const MotionProblem problem = classify_hand_motion(evidence.hand_path, evidence.noise);
+  // Against a board, turning about a fixed point is good enough.
+  return problem == MotionProblem::kNone || problem == MotionProblem::kFixedPoint;
+}
+
 /// The judgement in the result's words; devices are blamed for what a motion cannot mend.
 Reason reason_after(MotionProblem problem, const Evidence& evidence) {
+  if (problem != MotionProblem::kNone && looked_past_board(evidence)) {
+    return Reason::kTooFewFeatures;
+  }
   const bool names_the_motion =
       problem == MotionProblem::kNoMotion || problem == MotionProblem::kInsufficientRotation ||
       problem == MotionProblem::kNoParallax || problem == MotionProblem::kSingleAxis;

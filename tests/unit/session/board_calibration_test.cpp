@@ -171,6 +171,20 @@ TEST(BoardCalibration, NamesTheBoardThatWasNotSeen) {
   EXPECT_EQ(calibration.progress().guidance, "show the board to the scope: chessboard:9x6:4");
 }
 
+TEST(BoardCalibration, BlamesTheViewNotTheMotionWhereTheBoardWasSeldomSeen) {
+  Instruments instruments(moving);
+  Calibration calibration(options());
+  for (int k = 0; k < 12 * kTrackerRate_hz; ++k) calibration.add_hand(instruments.hand(k));
+  for (int k = 0; k < 12 * kFrameRate_hz; ++k) {
+    TrackedFrame frame = instruments.frame(k, k / kFrameRate_hz);
+    if (k > 10) frame.observations.clear();
+    calibration.add_frame(frame);
+  }
+  const CalibrationResult result = calibration.solve();
+  EXPECT_EQ(result.verdict, Verdict::kRefused);
+  EXPECT_EQ(result.reason, Reason::kTooFewFeatures);
+}
+
 TEST(BoardCalibration, ResultSaysWhereTheEyeLooked) {
   CalibrationResult result;
   EXPECT_EQ(to_json(result)["eye"], "sfm");

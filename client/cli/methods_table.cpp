@@ -41,9 +41,9 @@ std::vector<Row> rows() {
 }  // namespace
 
 std::string methods_table() {
-  std::string text = fmt::format("{:<27}{:<9}{}\n", "method", "scale", "source");
+  std::string text = fmt::format("{:<27}{:<9}{}", "method", "scale", "source");
   for (const Row& row : rows()) {
-    text += fmt::format("{:<27}{:<9}{}\n", row.name, row.scale, row.source);
+    text += fmt::format("\n{:<27}{:<9}{}", row.name, row.scale, row.source);
   }
   return text;
 }

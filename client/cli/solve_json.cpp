@@ -43,7 +43,8 @@ Json solve_json(const PoseSolution& solution) {
   json["scale"] = solution.scale == ScaleMode::kKnown ? "known" : "unknown";
   json["poses"] = {{"received", solution.poses},
                    {"used", solution.poses_used},
-                   {"wrong_rows", rows_of(solution.wrong_poses)}};
+                   {"wrong_rows", rows_of(solution.wrong_poses)},
+                   {"rejected_rows", rows_of(solution.rejected_poses)}};
   json["noise"] = noise_json(solution);
   return json;
 }

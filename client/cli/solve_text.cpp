@@ -16,18 +16,34 @@ std::string basis(const PoseSolution& solution) {
   return text + (solution.scale == ScaleMode::kKnown ? ", scale known" : ", scale unknown");
 }
 
-std::string wrong_poses_text(const PoseSolution& solution, const Palette& palette) {
+/// "rows 7, 12, 30": counted from 1, as people count rows.
+std::string rows_of(const std::vector<std::size_t>& poses) {
+  std::string rows = poses.size() == 1 ? "row" : "rows";
+  for (const std::size_t pose : poses) {
+    rows += fmt::format("{} {}", pose == poses.front() ? "" : ",", pose + 1);
+  }
+  return rows;
+}
+
+std::string left_out_text(const PoseSolution& solution, const Palette& palette) {
   const std::vector<std::size_t>& wrong = solution.wrong_poses;
-  if (wrong.empty()) return "";
-  std::string rows;
-  for (const std::size_t pose : wrong)
-    rows += fmt::format("{} {}", rows.empty() ? "" : ",", pose + 1);
-  const bool one = wrong.size() == 1;
-  return "  " +
-         palette.yellow(fmt::format("{} of {} poses {} with the others and {} left out: row{}{}",
-                                    wrong.size(), solution.poses, one ? "disagrees" : "disagree",
-                                    one ? "was" : "were", one ? "" : "s", rows)) +
-         "\n";
+  const std::vector<std::size_t>& rejected = solution.rejected_poses;
+  std::string text;
+  if (!wrong.empty()) {
+    const std::string what = wrong.size() == 1 ? "disagrees with the others and was left out"
+                                               : "disagree with the others and were left out";
+    text += "  " +
+            palette.yellow(fmt::format("{} of {} poses {}: {}", wrong.size(), solution.poses, what,
+                                       rows_of(wrong))) +
+            "\n";
+  }
+  if (!rejected.empty()) {
+    text += "  " +
+            palette.yellow("left out by maximum_likelihood, beyond what the noise explains: " +
+                           rows_of(rejected)) +
+            "\n";
+  }
+  return text;
 }
 
 /// Noise that the residuals show nothing of is estimated as next to nothing.
@@ -105,7 +121,7 @@ std::string pose_table(const CalibrationResult& result, const Palette& palette) 
 std::string solve_text(const PoseSolution& solution, const Palette& palette) {
   const CalibrationResult& result = solution.calibration;
   std::string text = verdict_text(result, basis(solution), palette);
-  text += wrong_poses_text(solution, palette);
+  text += left_out_text(solution, palette);
   if (result.has_estimate) text += estimate_text(solution, palette);
   return text + residual_table(result, palette) + pose_table(result, palette);
 }

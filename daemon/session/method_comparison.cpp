@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/method_comparison.hpp"
 
+#include "daemon/handeye/maximum_likelihood.hpp"
+#include "daemon/handeye/sandwich.hpp"
 #include "daemon/handeye/selection.hpp"
 #include "daemon/session/stopwatch.hpp"
 
 namespace handeye {
+namespace {
 
-MethodResult run_method(const Method& method, const HandEyeProblem& problem) {
+MethodResult run(const Method& method, const HandEyeProblem& problem) {
   const Stopwatch stopwatch;
   MethodResult result{.name = std::string(method.name)};
   result.solution = method.solve(problem);
@@ -15,13 +18,32 @@ MethodResult run_method(const Method& method, const HandEyeProblem& problem) {
   return result;
 }
 
+std::optional<MethodSigma> sigma_of(const Method& method, const HandEyeSolution& solution,
+                                    std::span<const PosePair> poses, const Selection& selection,
+                                    const PoseNoise& noise) {
+  const auto covariance = sandwich_covariance(method, poses, selection.pairs, solution, noise);
+  if (!covariance || !covariance->allFinite()) return std::nullopt;
+  return MethodSigma{sigma_rotation_deg(*covariance), sigma_translation_mm(*covariance)};
+}
+
+}  // namespace
+
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
-                                          std::span<const PosePair> poses, const PoseNoise& noise,
-                                          ScaleMode scale) {
-  const Selection selection = select_movements(poses, {.scale = scale});
-  const HandEyeProblem problem{.poses = poses, .movements = selection.movements, .noise = noise};
+                                          std::span<const PosePair> poses,
+                                          const ComparisonOptions& options) {
+  const Selection selection = select_movements(poses, {.scale = options.scale});
+  const HandEyeProblem problem{.poses = poses,
+                               .movements = selection.movements,
+                               .noise = options.noise,
+                               .estimate_noise = options.estimate_noise};
   std::vector<MethodResult> results;
-  for (const Method& method : methods) results.push_back(run_method(method, problem));
+  for (const Method& method : methods) {
+    MethodResult result = run(method, problem);
+    if (options.sigma && result.solution) {
+      result.sigma = sigma_of(method, *result.solution, poses, selection, options.noise);
+    }
+    results.push_back(std::move(result));
+  }
   return results;
 }
 

@@ -9,13 +9,25 @@
 
 namespace handeye {
 
-/// One method's answer to a problem, with its residuals over all of the problem's poses and its
-/// time, which is that of the method alone.
-MethodResult run_method(const Method& method, const HandEyeProblem& problem);
+struct ComparisonOptions {
+  ScaleMode scale{ScaleMode::kUnknown};
+  PoseNoise noise;
+  bool estimate_noise{true};
+  bool sigma{false};  ///< carry the noise through each method's equations to its own sigma
+};
 
-/// Each method's answer to the same poses, with residuals and time.
+/// Each method's answer to the same selection of movements, with its residuals over all poses and
+/// its time, which is that of the method alone.
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
-                                          std::span<const PosePair> poses, const PoseNoise& noise,
-                                          ScaleMode scale = ScaleMode::kUnknown);
+                                          std::span<const PosePair> poses,
+                                          const ComparisonOptions& options);
+
+/// The same without sigmas, which cost time.
+inline std::vector<MethodResult> compare_methods(std::span<const Method> methods,
+                                                 std::span<const PosePair> poses,
+                                                 const PoseNoise& noise,
+                                                 ScaleMode scale = ScaleMode::kUnknown) {
+  return compare_methods(methods, poses, ComparisonOptions{.scale = scale, .noise = noise});
+}
 
 }  // namespace handeye

@@ -10,7 +10,6 @@
 #include "daemon/handeye/consensus.hpp"
 #include "daemon/handeye/judge.hpp"
 #include "daemon/handeye/maximum_likelihood.hpp"
-#include "daemon/handeye/selection.hpp"
 #include "daemon/session/method_comparison.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "daemon/session/verdict.hpp"
@@ -37,6 +36,11 @@ std::vector<Method> chosen_methods(const PoseSolveOptions& options) {
   return chosen;
 }
 
+/// The answer comes last in either table; it is solved apart, for its covariance.
+std::span<const Method> others_of(std::span<const Method> chosen) {
+  return chosen.back().name == kAnswer ? chosen.first(chosen.size() - 1) : chosen;
+}
+
 PoseNoise noise_from(const PoseSolveOptions& options) {
   PoseNoise noise;
   if (options.hand_noise) {
@@ -57,14 +61,13 @@ MaximumLikelihoodOptions likelihood_options(const PoseSolveOptions& options) {
           .estimate_scale = options.scale == ScaleMode::kUnknown};
 }
 
-std::vector<PosePair> without(std::span<const PosePair> poses,
-                              const std::vector<std::size_t>& wrong) {
-  std::vector<PosePair> right;
-  right.reserve(poses.size());
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (!std::ranges::binary_search(wrong, k)) right.push_back(poses[k]);
+/// The indices below n that are not in `wrong`, which is ascending.
+std::vector<std::size_t> indices_without(std::size_t n, const std::vector<std::size_t>& wrong) {
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!std::ranges::binary_search(wrong, k)) indices.push_back(k);
   }
-  return right;
+  return indices;
 }
 
 /// The likelihood's answer to all poses, and what it took.
@@ -91,17 +94,6 @@ MethodResult method_result(const Answer& answer, const CalibrationResult& result
   method.residuals = result.residuals;
   method.sigma = MethodSigma{result.sigma_rotation_deg, result.sigma_translation_mm};
   return method;
-}
-
-std::vector<MethodResult> method_results(const std::vector<Method>& chosen, const Answer& answer,
-                                         const CalibrationResult& result,
-                                         const HandEyeProblem& problem) {
-  std::vector<MethodResult> results;
-  for (const Method& method : chosen) {
-    results.push_back(method.name == kAnswer ? method_result(answer, result)
-                                             : run_method(method, problem));
-  }
-  return results;
 }
 
 bool is_finite(const CalibrationResult& result) {
@@ -140,7 +132,9 @@ PoseSolution solve_poses(std::span<const PosePair> poses, const PoseSolveOptions
                         .wrong_poses = wrong_poses(poses, {.scale = options.scale}),
                         .noise = solver.noise,
                         .noise_estimated = solver.estimate_noise};
-  const std::vector<PosePair> right = without(poses, solution.wrong_poses);
+  const std::vector<std::size_t> places = indices_without(poses.size(), solution.wrong_poses);
+  std::vector<PosePair> right;
+  for (const std::size_t place : places) right.push_back(poses[place]);
   const Answer answer = answer_for(right, solver);
   const Judgement judgement = judge(answer.observations, answer.likelihood,
                                     {.wanted_rotation_deg = options.wanted.rotation_deg,
@@ -152,15 +146,18 @@ PoseSolution solve_poses(std::span<const PosePair> poses, const PoseSolveOptions
   if (answer.likelihood) {
     write_estimate(answer, judgement.covariance, right, result);
     solution.poses_used = answer.likelihood->poses_used;
+    for (const std::size_t k : answer.likelihood->rejected) {
+      solution.rejected_poses.push_back(places[k]);
+    }
     solution.noise = answer.likelihood->noise;
   }
   write_verdict(judgement.problem, result);
-  const Selection selection = select_movements(right, {.scale = options.scale});
-  result.methods = method_results(chosen, answer, result,
-                                  {.poses = right,
-                                   .movements = selection.movements,
-                                   .noise = solver.noise,
-                                   .estimate_noise = solver.estimate_noise});
+  result.methods = compare_methods(others_of(chosen), right,
+                                   {.scale = options.scale,
+                                    .noise = solution.noise,
+                                    .estimate_noise = solver.estimate_noise,
+                                    .sigma = answer.likelihood || !solver.estimate_noise});
+  if (chosen.back().name == kAnswer) result.methods.push_back(method_result(answer, result));
   result.timings_ms = {.handeye = answer.time_ms, .total = stopwatch.elapsed_ms()};
   return solution;
 }

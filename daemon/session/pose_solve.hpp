@@ -38,6 +38,9 @@ struct PoseSolution {
   /// Indices of poses that disagree with the others grossly: no method was given them, and the
   /// residuals are without them.
   std::vector<std::size_t> wrong_poses;
+  /// Indices of further ones that maximum_likelihood left out in the end: beyond what the noise
+  /// explains.
+  std::vector<std::size_t> rejected_poses;
   std::size_t poses_used{0};   ///< by maximum_likelihood; 0: it found no answer
   PoseNoise noise;             ///< as given, or as estimated
   bool noise_estimated{true};  ///< false: given

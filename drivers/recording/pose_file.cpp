@@ -16,6 +16,7 @@ namespace handeye {
 namespace {
 
 constexpr std::size_t kColumns = 14;
+constexpr double kLargest = 1e15;        // beyond it squares of lengths lose their meaning
 constexpr double kNormTolerance = 1e-3;  // figures rounded to four decimals are well within
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // which spreadsheets put first
 constexpr std::size_t kQuotedCharacters = 40;                // of a field or line in a message
@@ -91,7 +92,8 @@ double number_in(std::string_view field, std::size_t column, const Line& line) {
   if (digits.starts_with('+')) digits.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) {
+  const bool too_large = std::isfinite(value) && std::abs(value) > kLargest;
+  if (error == std::errc::result_out_of_range || too_large) {
     line.fail_at(column, name, quoted(field) + " is beyond any pose; take the row out");
   }
   if (error != std::errc() || end != digits.data() + digits.size()) {

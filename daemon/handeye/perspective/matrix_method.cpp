@@ -33,9 +33,9 @@ std::optional<Eigen::Matrix3d> linear_rotation(std::span<const MatrixPosition> p
     const Eigen::Matrix3d q = nearest_rotation(n1_inverse * position.matrix.leftCols<3>());
     const Eigen::Matrix3d a = position.hand1_from_hand.linear();
     Eigen::Matrix<double, 9, 9> equation = Eigen::Matrix<double, 9, 9>::Zero();
-    for (int row = 0; row < 3; ++row) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
       equation.block<3, 3>(3 * row, 3 * row) += q;  // columns of R_Y one below the other
-      for (int column = 0; column < 3; ++column) {
+      for (Eigen::Index column = 0; column < 3; ++column) {
         equation.block<3, 3>(3 * row, 3 * column).diagonal().array() -= a(row, column);
       }
     }

@@ -113,8 +113,8 @@ std::optional<PerspectiveRefusal> lacking(const Observations& observations) {
                               fmt::format("{} positions; at least {} are needed",
                                           observations.positions.size(), kMinPositions)};
   }
-  if (const auto numbers = unusable_numbers(observations)) return numbers;
-  if (const auto points = lacking_points(observations)) return points;
+  if (auto numbers = unusable_numbers(observations)) return numbers;
+  if (auto points = lacking_points(observations)) return points;
   const Eigen::Vector2d rotation = spread_of_rotations(observations);
   if (rotation(0) < kMinRotation_rad) {
     return PerspectiveRefusal{"insufficient_rotation",

@@ -10,8 +10,10 @@
 namespace handeye {
 namespace {
 
-/// A hand that disagrees with its images by more than this is no noisy hand but a wrong one.
+/// A hand that disagrees with its images by more than this, or by more than this part of its own
+/// movement, is no noisy hand but a wrong one.
 constexpr double kWrongHand_rad = 0.1;
+constexpr double kWrongHandPart = 0.3;
 /// What is known no better than this is not known.
 constexpr double kUnknown_deg = 10.0;
 
@@ -119,8 +121,20 @@ PerspectiveRefusal not_determined() {
           "further about two axes, with points that fill the image"};
 }
 
-std::optional<PerspectiveRefusal> doubtful(const Refinement& refinement) {
-  if (refinement.calibration.hand_noise.rotation_rad > kWrongHand_rad) {
+/// Rms of the hand's translations.
+double hand_movement_mm(const Observations& observations) {
+  double sum = 0.0;
+  for (const ObservedPosition& position : observations.positions) {
+    sum += position.hand1_from_hand.translation().squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(observations.positions.size()));
+}
+
+std::optional<PerspectiveRefusal> doubtful(const Observations& observations,
+                                           const Refinement& refinement) {
+  const HandNoise& noise = refinement.calibration.hand_noise;
+  if (noise.rotation_rad > kWrongHand_rad ||
+      noise.translation_mm > kWrongHandPart * hand_movement_mm(observations)) {
     return PerspectiveRefusal{"inconsistent",
                               "the images contradict the hand's poses: is hand1_from_hand given "
                               "(not its inverse), in mm, in the order of the images?"};
@@ -138,7 +152,7 @@ std::optional<PerspectiveRefusal> doubtful(const Refinement& refinement) {
 std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
     const Observations& given, const PerspectiveOptions& options) {
   Observations observations = given;
-  if (const auto refusal = lacking(observations)) return *refusal;
+  if (auto refusal = lacking(observations)) return *refusal;
   const bool planar = observations.planar();
   const auto start = starting_state(observations, options, planar);
   if (!start) return not_determined();
@@ -165,7 +179,7 @@ std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
   if (options.distortion_inside) {
     refinement = with_round_lens(observations, std::move(*refinement));
   }
-  if (const auto refusal = doubtful(*refinement)) return *refusal;
+  if (auto refusal = doubtful(observations, *refinement)) return *refusal;
   calibration.refined = refinement->calibration;
   calibration.sigma = refinement->sigma;
   calibration.pixel_mm = observations.pixel_mm;

@@ -28,8 +28,8 @@ void expect_failure(const Finished& finished, int exit_code) {
 
 TEST(CommandLine, EveryCommandHasAHelpText) {
   const std::string overview = run_handeye({"--help"}).out;
-  for (const std::string command :
-       {"calibrate", "status", "watch", "cancel", "pose", "record", "replay", "solve", "compare"}) {
+  for (const std::string command : {"calibrate", "status", "watch", "cancel", "pose", "record",
+                                    "replay", "solve", "onestep", "compare"}) {
     const Finished finished = run_handeye({command, "--help"});
     EXPECT_EQ(finished.exit_code, 0) << command;
     EXPECT_THAT(finished.out, HasSubstr("Usage: handeye " + command)) << command;

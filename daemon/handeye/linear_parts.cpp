@@ -91,8 +91,8 @@ Eigen::Matrix4d right_product(const Eigen::Quaterniond& q) {
 Eigen::Matrix<double, 9, 9> entry_rows(const Movement& movement) {
   const auto& [hand, eye] = movement;
   Eigen::Matrix<double, 9, 9> rows = Eigen::Matrix<double, 9, 9>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
       rows.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(eye.linear()(i, j));
     }
     rows.block<3, 3>(3 * i, 3 * i) -= hand.linear().transpose();

@@ -18,7 +18,8 @@ Eigen::Matrix<double, 12, 13> rows_of(const Movement& movement) {
   const auto& [hand, eye] = movement;
   Eigen::Matrix<double, 12, 13> rows = Eigen::Matrix<double, 12, 13>::Zero();
   rows.topLeftCorner<9, 9>() = entry_rows(movement);
-  for (int i = 0; i < 3; ++i) rows.block<1, 3>(9 + i, 3 * i) = hand.translation().transpose();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    rows.block<1, 3>(9 + i, 3 * i) = hand.translation().transpose();
   rows.block<3, 3>(9, 9) = Eigen::Matrix3d::Identity() - eye.linear();
   rows.block<3, 1>(9, 12) = -eye.translation();
   return rows;

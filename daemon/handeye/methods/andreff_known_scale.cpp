@@ -39,7 +39,7 @@ std::optional<Eigen::Matrix3d> rotation_of(std::span<const Movement> movements,
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto& [hand, eye] = movements[static_cast<std::size_t>(k)];
     const double weight = weights[static_cast<std::size_t>(k)];
-    for (int i = 0; i < 3; ++i) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
       rows.block<1, 3>(3 * k + i, 3 * i) = weight * hand.translation().transpose();
     }
     rows.block<3, 3>(3 * k, 9) = weight * (Eigen::Matrix3d::Identity() - eye.linear());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include <Eigen/Dense>
 
 #include "daemon/handeye/linear_parts.hpp"

@@ -174,7 +174,13 @@ void check_all_methods(ScaleMode mode) {
   EXPECT_TRUE(rc::check("every method recovers X", [&] {
     const Shape shape = *any_shape(mode == ScaleMode::kKnown);
     const Configuration made = configuration_of(shape, mode);
-    RC_PRE(condition(made, mode) < kMaxCondition);
+    const double ill = condition(made, mode);
+    RC_PRE(ill < kMaxCondition);
+    RC_CLASSIFY(ill > 100, "condition above 100");
+    RC_CLASSIFY(shape.angles == Angles::kNearHalfTurn, "all movements near half a turn");
+    RC_CLASSIFY(shape.angle_of_x == Angles::kNearHalfTurn, "X near half a turn");
+    RC_CLASSIFY(shape.movements == 2, "two movements");
+    RC_CLASSIFY(shape.pivots, "fixed point");
     for (const Method& method : methods(mode)) {
       const auto found = method.solve({.poses = made.poses, .movements = made.movements});
       if (!found) RC_FAIL(fmt::format("{} gives nothing", method.name));

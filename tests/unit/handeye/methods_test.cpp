@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/methods/methods.hpp"
 
-#include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -12,8 +10,10 @@
 
 #include "daemon/handeye/selection.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
+#include "tests/unit/handeye/tables.hpp"
 
-/// What every row of both tables keeps. Exactness over random configurations: exactness_test.cpp.
+/// What every row of both tables keeps. Exactness over random configurations:
+/// exactness_test.cpp; input that determines nothing: degenerate_test.cpp.
 namespace handeye {
 namespace {
 
@@ -22,32 +22,11 @@ using synthetic::random_poses;
 using synthetic::random_truth;
 using synthetic::Truth;
 
-constexpr std::array<ScaleMode, 2> kModes{ScaleMode::kKnown, ScaleMode::kUnknown};
-
-/// Those that solve from movements alone: all but the last.
-std::span<const Method> movement_methods(ScaleMode mode) {
-  const std::span<const Method> all = methods(mode);
-  return all.first(all.size() - 1);
-}
-
-std::string label(const Method& method, ScaleMode mode) {
-  return std::string(method.name) + (mode == ScaleMode::kKnown ? ", known" : ", unknown");
-}
-
-double scale_in(ScaleMode mode, double units_per_mm) {
-  return mode == ScaleMode::kKnown ? 1.0 : units_per_mm;
-}
-
-void expect_near(const HandEyeSolution& found, const HandEyeSolution& wanted, double tolerance,
-                 const std::string& what) {
-  EXPECT_LT(rotation_angle_rad(found.hand_from_eye.linear(), wanted.hand_from_eye.linear()),
-            0.1 * tolerance)
-      << what;
-  EXPECT_LT((found.hand_from_eye.translation() - wanted.hand_from_eye.translation()).norm(),
-            tolerance * wanted.hand_from_eye.translation().norm())
-      << what;
-  EXPECT_NEAR(found.scale_units_per_mm / wanted.scale_units_per_mm, 1.0, tolerance) << what;
-}
+using tables::expect_near;
+using tables::kModes;
+using tables::label;
+using tables::movement_methods;
+using tables::scale_in;
 
 TEST(Methods, AreNamedOnceInEachTableAndEndWithTheAnswer) {
   for (const ScaleMode mode : kModes) {
@@ -198,79 +177,6 @@ TEST(Methods, StayNearTheTruthUnderNoise) {
         EXPECT_NEAR(found->scale_units_per_mm / scale, 1.0, 0.05) << label(method, mode);
       }
     }
-  }
-}
-
-/// Every solver must say nothing rather than anything.
-void expect_nothing(ScaleMode mode, const std::vector<PosePair>& poses,
-                    const std::vector<Movement>& movements, const std::string& what) {
-  for (const Method& method : methods(mode)) {
-    EXPECT_FALSE(method.solve({.poses = poses, .movements = movements}))
-        << label(method, mode) << ": " << what;
-  }
-}
-
-void expect_nothing(ScaleMode mode, const std::vector<PosePair>& poses, const std::string& what) {
-  expect_nothing(mode, poses, all_movements(poses), what);
-}
-
-std::vector<PosePair> exact_poses(ScaleMode mode, const synthetic::Motion& motion) {
-  return synthetic::record(synthetic::scope(scale_in(mode, 0.1)), motion, 40, {0, 0, 0, 0}, 5)
-      .poses();
-}
-
-TEST(Methods, GiveNothingOnDegenerateMotion) {
-  for (const ScaleMode mode : kModes) {
-    expect_nothing(mode, {}, "no pose");
-    const std::vector<PosePair> good = exact_poses(mode, synthetic::free_hand);
-    expect_nothing(mode, {good.front()}, "one pose");
-    expect_nothing(mode, {good[0], good[20]}, "one movement");
-    expect_nothing(mode, std::vector<PosePair>(10, good.front()), "identical poses");
-    expect_nothing(mode, exact_poses(mode, synthetic::still), "still");
-    expect_nothing(mode, exact_poses(mode, synthetic::translation_only), "pure translation");
-    expect_nothing(mode, exact_poses(mode, synthetic::one_axis), "parallel axes");
-  }
-}
-
-/// The likelihood gives an answer with the covariance it has, which the judge refuses (judge_test).
-TEST(Methods, FromMovementsGiveNothingOnAFixedPointWithUnknownScale) {
-  const auto movements = all_movements(exact_poses(ScaleMode::kUnknown, synthetic::pivot));
-  for (const Method& method : movement_methods(ScaleMode::kUnknown)) {
-    EXPECT_FALSE(method.solve({.movements = movements})) << method.name;
-  }
-}
-
-TEST(Methods, GiveNothingOnNumbersThatAreNoPoses) {
-  for (const ScaleMode mode : kModes) {
-    const std::vector<PosePair> good = exact_poses(mode, synthetic::free_hand);
-    const auto expect_refused = [&](const std::string& what, auto spoil) {
-      std::vector<PosePair> broken = good;
-      spoil(broken[7]);
-      expect_nothing(mode, broken, what);
-    };
-    expect_refused("NaN", [](PosePair& pair) {
-      pair.eye_from_scene.translation().y() = std::numeric_limits<double>::quiet_NaN();
-    });
-    expect_refused("infinity", [](PosePair& pair) {
-      pair.room_from_hand.matrix()(0, 0) = std::numeric_limits<double>::infinity();
-    });
-    expect_refused("zero matrix", [](PosePair& pair) { pair.room_from_hand.linear().setZero(); });
-    expect_refused("scaled rotation", [](PosePair& pair) { pair.eye_from_scene.linear() *= 1.01; });
-    expect_refused("sheared rotation",
-                   [](PosePair& pair) { pair.room_from_hand.linear()(0, 1) += 1e-3; });
-    expect_refused("mirrored rotation",
-                   [](PosePair& pair) { pair.eye_from_scene.linear().col(2) *= -1.0; });
-  }
-}
-
-TEST(Methods, WithKnownScaleSolveAFixedPoint) {
-  const Truth truth = synthetic::scope();
-  const auto poses = exact_poses(ScaleMode::kKnown, synthetic::pivot);
-  const auto movements = all_movements(poses);
-  for (const Method& method : methods(ScaleMode::kKnown)) {
-    const auto found = method.solve({.poses = poses, .movements = movements});
-    ASSERT_TRUE(found) << method.name;
-    expect_near(*found, truth.solution, 1e-8, std::string(method.name));
   }
 }
 

@@ -18,7 +18,6 @@ namespace handeye {
 namespace {
 
 using synthetic::all_movements;
-using synthetic::Truth;
 
 constexpr int kSeeds = 200;
 constexpr double kMostWorse = 1.02;
@@ -102,13 +101,12 @@ Trial trial_of(const Regime& regime, std::uint32_t seed) {
   return trial;
 }
 
-cv::Mat matrix_of(const Eigen::Matrix3d& matrix) {
-  return (cv::Mat_<double>(3, 3) << matrix(0, 0), matrix(0, 1), matrix(0, 2), matrix(1, 0),
-          matrix(1, 1), matrix(1, 2), matrix(2, 0), matrix(2, 1), matrix(2, 2));
-}
-
-cv::Mat vector_of(const Eigen::Vector3d& vector) {
-  return (cv::Mat_<double>(3, 1) << vector.x(), vector.y(), vector.z());
+cv::Mat matrix_of(const Eigen::MatrixXd& matrix) {
+  cv::Mat copy(static_cast<int>(matrix.rows()), static_cast<int>(matrix.cols()), CV_64F);
+  for (int i = 0; i < copy.rows; ++i) {
+    for (int j = 0; j < copy.cols; ++j) copy.at<double>(i, j) = matrix(i, j);
+  }
+  return copy;
 }
 
 Pose by_opencv(const std::vector<PosePair>& poses, cv::HandEyeCalibrationMethod method,
@@ -116,9 +114,9 @@ Pose by_opencv(const std::vector<PosePair>& poses, cv::HandEyeCalibrationMethod 
   std::array<std::vector<cv::Mat>, 4> in;
   for (const auto& [room_from_hand, eye_from_scene] : poses) {
     in[0].push_back(matrix_of(room_from_hand.linear()));
-    in[1].push_back(vector_of(units_per_mm * room_from_hand.translation()));
+    in[1].push_back(matrix_of(units_per_mm * room_from_hand.translation()));
     in[2].push_back(matrix_of(eye_from_scene.linear()));
-    in[3].push_back(vector_of(units_per_mm * eye_from_scene.translation()));
+    in[3].push_back(matrix_of(units_per_mm * eye_from_scene.translation()));
   }
   cv::Mat rotation;
   cv::Mat translation;
@@ -163,6 +161,7 @@ Solver solver(std::string_view name) {
 /// OpenCV's ANDREFF and DANIILIDIS depend on the unit of length, ours do not.
 std::vector<Comparison> compare(const Regime& regime, double opencv_units_per_mm) {
   std::vector<Comparison> comparisons;
+  comparisons.reserve(kPeers.size());
   for (const Peer& peer : kPeers) comparisons.push_back({peer.ours, {}, {}});
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
     const Trial trial = trial_of(regime, seed);

@@ -94,16 +94,6 @@ double mean_nees(int seeds, int count, const MaximumLikelihoodOptions& options,
   return sum / seeds;
 }
 
-TEST(MaximumLikelihood, ClaimsAnHonestCovarianceWithKnownNoise) {
-  MaximumLikelihoodOptions options;
-  options.noise = tracker_and_camera();
-  options.estimate_noise = false;
-  const double mean = mean_nees(100, 200, options, 0, 0);
-  RecordProperty("nees", std::to_string(mean));
-  EXPECT_GT(mean, nees_band(100).low);
-  EXPECT_LT(mean, nees_band(100).high);
-}
-
 TEST(MaximumLikelihood, ClaimsAnHonestCovarianceWithEstimatedNoiseAndTimeOffset) {
   MaximumLikelihoodOptions options;
   options.noise = {rad_from_deg(0.12), 0.3, rad_from_deg(0.01), 0.05};  // wrong on purpose

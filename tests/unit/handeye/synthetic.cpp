@@ -93,6 +93,14 @@ Pose pivot(double time_s) {
   return pose;
 }
 
+Motion pivot_with_shift(double shift) {
+  return [shift](double time_s) {
+    Pose pose = pivot(time_s);
+    pose.translation() += shift / 15.0 * shift_mm(time_s);
+    return pose;
+  };
+}
+
 Pose still(double) {
   return about_target(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
 }

@@ -38,6 +38,8 @@ Pose about_camera_centre(double time_s);
 Pose one_axis(double time_s);
 /// About a point 150 mm behind the camera that stays where it is, all axes.
 Pose pivot(double time_s);
+/// As pivot, the point shifted as free_hand shifts, within +-shift_mm an axis.
+Motion pivot_with_shift(double shift_mm);
 Pose still(double time_s);
 
 struct Recording {

@@ -17,7 +17,6 @@
 namespace handeye {
 namespace {
 
-using synthetic::all_movements;
 using synthetic::random_poses;
 using synthetic::random_truth;
 using synthetic::Truth;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Dense>
 
@@ -19,6 +20,7 @@ namespace handeye {
 namespace {
 
 constexpr std::size_t kMinPoses = 3;        // two movements
+constexpr double kFarFromMedian = 5.0;      // of the norms at the start
 constexpr int kRejections = 3;              // each with what the one before has left
 constexpr double kDoubtedLogScale = 0.003;  // sigma from which on other scales are tried
 constexpr double kUndecidedSigmas = 0.5;    // standard deviations that an undecided distance is
@@ -74,19 +76,39 @@ ResidualNoise::Variances solve(PoseProblem& problem, const MaximumLikelihoodOpti
   return variances;
 }
 
+std::vector<bool> within(const std::vector<double>& norms, double limit) {
+  std::vector<bool> result;
+  result.reserve(norms.size());
+  for (const double norm : norms) result.push_back(norm <= limit);
+  return result;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Leaves out what already the start says is far from all others: one pose that is metres off turns
+/// the whole scene, whatever the loss.
+void leave_out_far_ones(PoseProblem& problem, const MaximumLikelihoodOptions& options) {
+  if (!(options.reject > 0)) return;
+  const std::vector<double> norms = problem.norms(variances_of(options.noise));
+  problem.keep(within(norms, kFarFromMedian * std::max(median(norms), 1.0)));
+}
+
 /// Huber's loss bounds an outlier's pull but keeps it; many that pull the same way would still bias
 /// the answer. So what the noise cannot explain is left out, and the rest solved again.
 ResidualNoise::Variances solve_without_outliers(PoseProblem& problem,
                                                 const MaximumLikelihoodOptions& options) {
+  leave_out_far_ones(problem, options);
   ResidualNoise::Variances variances = solve(problem, options);
   for (int pass = 0; options.reject > 0 && pass < kRejections; ++pass) {
-    const Matrix6d whitening = noise_at(problem).whitening(variances);
-    std::vector<bool> kept;
-    for (const Vector6d& residual : problem.all_residuals()) {
-      kept.push_back((whitening * residual).norm() <= options.reject);
-    }
+    const std::vector<double> norms = problem.norms(variances);
+    std::vector<bool> kept = within(norms, options.reject);
     const auto left = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
-    if (kept == problem.kept() || left < kMinPoses || 2 * left < kept.size()) break;
+    if (left < kMinPoses || 2 * left < kept.size()) kept.assign(norms.size(), true);
+    if (kept == problem.kept()) break;
     problem.keep(std::move(kept));
     variances = solve(problem, options);
   }
@@ -167,21 +189,34 @@ MaximumLikelihoodResult refine(std::span<const HandEyeObservation> observations,
   return describe(problem, variances, options);
 }
 
-/// With the assumed noise from every start: the likeliest. One scale for the eye's noise, that of
-/// the first start, makes them comparable.
+/// With the assumed noise from every start: the one that fits most poses best, whatever the others
+/// do. One scale for the eye's noise, that of the first start, makes them comparable.
 std::optional<HandEyeSolution> best_start(std::span<const HandEyeObservation> observations,
                                           const std::vector<HandEyeSolution>& starts,
                                           const MaximumLikelihoodOptions& options) {
-  std::optional<HandEyeSolution> best;
-  double least_cost = 0;
+  const ResidualNoise::Variances assumed = variances_of(options.noise);
+  std::vector<HandEyeSolution> solutions;
+  std::vector<std::vector<double>> norms;
+  double least_median = std::numeric_limits<double>::infinity();
   for (const HandEyeSolution& start : starts) {
     if (!usable(start)) continue;
     PoseProblem problem(observations, start, options);
     problem.noise_holds_at(starts.front().scale_units_per_mm);
-    const double cost = problem.minimise(variances_of(options.noise));
-    if (best && !(cost < least_cost)) continue;
-    best = problem.solution();
-    least_cost = cost;
+    leave_out_far_ones(problem, options);
+    problem.minimise(assumed);
+    solutions.push_back(problem.solution());
+    norms.push_back(problem.norms(assumed));
+    least_median = std::min(least_median, median(norms.back()));
+  }
+  std::optional<HandEyeSolution> best;
+  double least_cost = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    double cost = 0;
+    for (const double norm : norms[i]) {
+      cost += square(std::min(norm, kFarFromMedian * least_median));
+    }
+    if (cost < least_cost) best = solutions[i];
+    least_cost = std::min(cost, least_cost);
   }
   return best;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/pose_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -11,6 +12,7 @@ namespace handeye {
 namespace {
 
 constexpr int kMaxIterations = 100;
+constexpr int kMedianRounds = 5;
 constexpr double kSettled = 1e-15;      // relative decrease of the cost that is still expected
 constexpr double kExact = 1e-20;        // cost of a pose that is as good as none
 constexpr double kMaxDamping = 1e10;    // no step is small enough: at the limit of rounding
@@ -18,6 +20,19 @@ constexpr double kLeastDamping = 1e-9;  // what the first step that fails is rep
 
 double square(double x) {
   return x * x;
+}
+
+/// Component by component.
+Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& vectors) {
+  Eigen::Vector3d result;
+  std::vector<double> values(vectors.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < vectors.size(); ++k) values[k] = vectors[k][axis];
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    result[axis] = *middle;
+  }
+  return result;
 }
 
 }  // namespace
@@ -40,21 +55,37 @@ PoseProblem::PoseProblem(std::span<const HandEyeObservation> observations,
     scene_centre_mm_ += poses_.back().eye_in_scene_mm / n;
   }
 
-  // room_from_scene from all poses: the mean of what each says.
-  Eigen::Matrix3d rotations = Eigen::Matrix3d::Zero();
   for (CentredPose& pose : poses_) {
     pose.hand_in_room_mm -= room_centre_mm_;
     pose.eye_in_scene_mm -= scene_centre_mm_;
-    rotations += (pose.room_from_hand * unknowns_.hand_from_eye * pose.scene_from_eye.conjugate())
-                     .toRotationMatrix();
   }
-  unknowns_.room_from_scene = Eigen::Quaterniond(nearest_rotation(rotations));
+  place_scene();
+}
+
+/// room_from_scene from all poses: the median of what each says, for many may be wrong.
+void PoseProblem::place_scene() {
+  std::vector<Eigen::Quaterniond> rotations;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const CentredPose& pose : poses_) {
-    unknowns_.scene_in_room_mm +=
-        (pose.hand_in_room_mm + pose.room_from_hand * unknowns_.eye_in_hand_mm -
-         unknowns_.room_from_scene * pose.eye_in_scene_mm) /
-        n;
+    rotations.push_back(pose.room_from_hand * unknowns_.hand_from_eye *
+                        pose.scene_from_eye.conjugate());
+    sum += rotations.back().toRotationMatrix();
   }
+  Eigen::Quaterniond& rotation = unknowns_.room_from_scene;
+  rotation = Eigen::Quaterniond(nearest_rotation(sum));
+  std::vector<Eigen::Vector3d> differences(poses_.size());
+  for (int round = 0; round < kMedianRounds; ++round) {
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      differences[k] = log_so3((rotation.conjugate() * rotations[k]).toRotationMatrix());
+    }
+    rotation = (rotation * Eigen::Quaterniond(exp_so3(median(differences)))).normalized();
+  }
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    differences[k] = poses_[k].hand_in_room_mm +
+                     poses_[k].room_from_hand * unknowns_.eye_in_hand_mm -
+                     rotation * poses_[k].eye_in_scene_mm;
+  }
+  unknowns_.scene_in_room_mm = median(differences);
 }
 
 double PoseProblem::loss(double norm) const {
@@ -137,7 +168,7 @@ UnknownsVector PoseProblem::gradient(const ResidualNoise::Variances& noise,
   return result;
 }
 
-double PoseProblem::minimise(const ResidualNoise::Variances& noise) {
+void PoseProblem::minimise(const ResidualNoise::Variances& noise) {
   prior_log_scale_ = unknowns_.log_scale;
   if (noise_follows_) noise_log_scale_ = unknowns_.log_scale;
   NormalEquations now = normal_equations(noise, unknowns_);
@@ -168,7 +199,6 @@ double PoseProblem::minimise(const ResidualNoise::Variances& noise) {
       damping = std::max(10.0 * damping, kLeastDamping);
     }
   }
-  return now.cost;
 }
 
 void PoseProblem::hold_scale(double log_scale) {
@@ -182,10 +212,13 @@ void PoseProblem::noise_holds_at(double scale_units_per_mm) {
   noise_follows_ = false;
 }
 
-std::vector<Vector6d> PoseProblem::all_residuals() const {
-  std::vector<Vector6d> result;
+std::vector<double> PoseProblem::norms(const ResidualNoise::Variances& noise) const {
+  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns_);
+  std::vector<double> result;
   result.reserve(poses_.size());
-  for (const CentredPose& pose : poses_) result.push_back(pose_residual(pose, unknowns_));
+  for (const CentredPose& pose : poses_) {
+    result.push_back(whitening.value(pose_residual(pose, unknowns_)).norm());
+  }
   return result;
 }
 

@@ -32,8 +32,8 @@ class PoseProblem {
                           const PoseUnknowns& unknowns) const;
 
   /// Levenberg-Marquardt from where it stands, poses that were left out not counted. The prior of
-  /// the scale is taken about where it starts. Returns the cost.
-  double minimise(const ResidualNoise::Variances& noise);
+  /// the scale is taken about where it starts.
+  void minimise(const ResidualNoise::Variances& noise);
 
   /// From now on the scale is not estimated but this, while the eye's noise holds where it held;
   /// estimated again, about where it stands.
@@ -50,8 +50,8 @@ class PoseProblem {
 
   /// Not whitened; of the poses that count.
   std::vector<Vector6d> residuals() const;
-  /// Of all poses.
-  std::vector<Vector6d> all_residuals() const;
+  /// Of the whitened residuals; of all poses.
+  std::vector<double> norms(const ResidualNoise::Variances& noise) const;
 
   bool estimates(int unknown) const;
   int parameters() const;  ///< number of unknowns that are estimated
@@ -60,6 +60,7 @@ class PoseProblem {
   Pose room_from_scene() const;  ///< scene in mm
 
  private:
+  void place_scene();
   /// Adds up the poses, the information where there is room for it.
   void add_poses(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns, double& cost,
                  UnknownsVector& gradient, UnknownsMatrix* information) const;

@@ -13,22 +13,27 @@ set key top right samplen 1
 set yrange [0:*]
 setup(i) = word('ART1 ART2 wide', i + 1)
 
-set terminal svg size 960,760 font 'sans-serif,12' background '#ffffff'
+set offsets 0, 0, graph 0.3, 0
+# Columns of data: label, then ours and the paper's translation [%], rotation [deg], rotation [%]; true errors deg, mm.
+residual(i) = i == 0 ? 'translation residual [%]' : i == 1 ? 'rotation residual [deg]' : 'rotation residual [%]'
+
+set terminal svg size 1280,760 font 'sans-serif,12' background '#ffffff'
 set output residuals
-set multiplot layout 2,2 margins 0.07,0.97,0.16,0.94 spacing 0.09,0.22
+set multiplot layout 2,3 margins 0.04,0.96,0.16,0.94 spacing 0.06,0.22
 do for [i=0:1] {
-  set title setup(i) . ': translation residual [%]'
-  plot data index i using 3:xtic(1) title 'paper' lc rgb '#9aa5b1', '' index i using 2 title 'simulated' lc rgb '#1f6f8b'
-  set title setup(i) . ': rotation residual [%]'
-  plot data index i using 5:xtic(1) title 'paper' lc rgb '#9aa5b1', '' index i using 4 title 'simulated' lc rgb '#1f6f8b'
+  do for [j=0:2] {
+    set title setup(i) . ': ' . residual(j)
+    plot data index i using (column(3 + 2 * j)):xtic(1) title 'paper' lc rgb '#9aa5b1', \
+         '' index i using (column(2 + 2 * j)) title 'simulated' lc rgb '#1f6f8b'
+  }
 }
 unset multiplot
 
 set terminal svg size 960,420 font 'sans-serif,12' background '#ffffff'
 set output errors
-set multiplot layout 1,2 margins 0.07,0.97,0.28,0.91 spacing 0.09,0.2
+set multiplot layout 1,2 margins 0.07,0.95,0.28,0.91 spacing 0.09,0.2
 set title 'true error of the rotation [deg]'
-plot for [i=0:2] data index i using 6:xtic(1) title setup(i) lc rgb word('#1f6f8b #e08e45 #5b8c5a', i + 1)
+plot for [i=0:2] data index i using 8:xtic(1) title setup(i) lc rgb word('#1f6f8b #e08e45 #5b8c5a', i + 1)
 set title 'true error of the translation [mm]'
-plot for [i=0:2] data index i using 7:xtic(1) title setup(i) lc rgb word('#1f6f8b #e08e45 #5b8c5a', i + 1)
+plot for [i=0:2] data index i using 9:xtic(1) title setup(i) lc rgb word('#1f6f8b #e08e45 #5b8c5a', i + 1)
 unset multiplot

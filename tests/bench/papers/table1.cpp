@@ -60,18 +60,18 @@ std::string cell(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
 
-std::string cell(const std::optional<double>& value, int decimals) {
-  return value ? cell(*value, decimals) : "";
+std::string cell(const std::optional<double>& printed) {
+  return printed ? fmt::format("{:g}", *printed) : "";
 }
 
 void print_row(const std::string& label, const MethodFigures& ours, const PaperRow& paper,
                std::size_t runs) {
   fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", label,
-             cell(ours.translation_percent, 2), cell(paper.translation_percent, 1),
+             cell(ours.translation_percent, 2), cell(paper.translation_percent),
              cell(ours.translation_norm_percent, 2), cell(ours.rotation_deg, 3),
-             cell(paper.rotation_deg, 3), cell(ours.rotation_percent, 2),
-             cell(paper.rotation_percent, 2), cell(ours.time_ms, 1), cell(paper.time_ms, 0),
-             cell(ours.error_deg, 3), cell(ours.error_mm, 2), ours.solved, runs);
+             cell(paper.rotation_deg), cell(ours.rotation_percent, 2), cell(paper.rotation_percent),
+             cell(ours.time_ms, 1), cell(paper.time_ms), cell(ours.error_deg, 3),
+             cell(ours.error_mm, 2), ours.solved, runs);
 }
 
 void print_setup(const SetupFigures& setup) {
@@ -102,8 +102,9 @@ void write_plot_data(const std::vector<SetupFigures>& setups, const std::string&
   auto out = fmt::output_file(file);
   const auto write = [&](const std::string& label, const MethodFigures& ours,
                          const PaperRow& paper) {
-    out.print("{} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f}\n", label, ours.translation_percent,
-              paper.translation_percent.value_or(kNone), ours.rotation_percent,
+    out.print("{} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f}\n", label,
+              ours.translation_percent, paper.translation_percent.value_or(kNone),
+              ours.rotation_deg, paper.rotation_deg.value_or(kNone), ours.rotation_percent,
               paper.rotation_percent.value_or(kNone), ours.error_deg, ours.error_mm);
   };
   for (const SetupFigures& setup : setups) {

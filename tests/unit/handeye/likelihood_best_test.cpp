@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 
 #include <Eigen/Dense>
@@ -15,6 +15,15 @@
 #include "tests/unit/handeye/regimes.hpp"
 
 /// maximum_likelihood against every other method there is, ours and OpenCV's, in every regime.
+/// Built twice: as a test with few seeds, and for ./run bench regimes with two hundred and all of
+/// OpenCV.
+#ifndef HANDEYE_REGIME_SEEDS
+#define HANDEYE_REGIME_SEEDS 40
+#endif
+#ifndef HANDEYE_REGIME_OPENCV_POSES
+#define HANDEYE_REGIME_OPENCV_POSES 60
+#endif
+
 namespace handeye {
 namespace {
 
@@ -22,9 +31,10 @@ using synthetic::Regime;
 using synthetic::RegimeSample;
 using synthetic::RmsError;
 
-constexpr std::uint32_t kSeeds = 200;
+constexpr std::uint32_t kSeeds = HANDEYE_REGIME_SEEDS;
 constexpr double kMostWorse = 1.03;
-constexpr std::size_t kMostForOpencv = 60;  // it takes all pairs: minutes beyond
+// OpenCV takes all pairs of poses: minutes where there are many.
+constexpr std::size_t kMostForOpencv = HANDEYE_REGIME_OPENCV_POSES;
 constexpr double kMmPerMetre = 1000;
 
 constexpr std::array<std::pair<const char*, cv::HandEyeCalibrationMethod>, 5> kOpencv{

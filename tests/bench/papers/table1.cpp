@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints Table 1 of Schmidt, Vogt, Niemann 2005 beside the same table for simulated scopes, as
-// Markdown, and writes what its figures show. Usage: papers_seed1 RUNS DATA; RUNS has a folder a
+// Markdown, and writes what its figures show. Usage: papers_schmidt RUNS DATA; RUNS has a folder a
 // set-up.
 #include <algorithm>
 #include <array>
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
   using namespace handeye;
   using namespace handeye::papers;
   if (argc != 3) {
-    fmt::print(stderr, "usage: papers_seed1 RUNS DATA\n");
+    fmt::print(stderr, "usage: papers_schmidt RUNS DATA\n");
     return static_cast<int>(ExitCode::kUsage);
   }
   try {

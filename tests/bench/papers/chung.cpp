@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seed 2 (Chung): Table 2 beside ours, and the data of Figures 4 to 6. Usage: papers_seed2 FOLDER
+// Chung: Table 2 beside ours, and the data of Figures 4 to 6. Usage: papers_chung FOLDER
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -110,12 +110,12 @@ std::vector<Start> starts() {
   std::vector<Start> all;
   PerspectiveState state = chung::truth();
   state.object_from_hand = chung::pose_of(0.75 * ideal());
-  all.push_back({"Figure 4: 75 % of rotation and translation", "seed2_figure4.dat", state});
+  all.push_back({"Figure 4: 75 % of rotation and translation", "chung_figure4.dat", state});
 
   state = chung::truth();
   state.lens.k1_per_mm2 *= 0.75;
   state.lens.centre_px *= 0.75;
-  all.push_back({"Figure 5: 75 % of distortion and image centre", "seed2_figure5.dat", state});
+  all.push_back({"Figure 5: 75 % of distortion and image centre", "chung_figure5.dat", state});
 
   // The last element is the scale: 90 % of all would be the same matrix.
   state = chung::truth();
@@ -124,7 +124,7 @@ std::vector<Start> starts() {
     matrix *= 0.9;
     matrix(2, 3) = last;
   }
-  all.push_back({"Figure 6: 90 % of the perspective matrix", "seed2_figure6.dat", state});
+  all.push_back({"Figure 6: 90 % of the perspective matrix", "chung_figure6.dat", state});
 
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = 0; column < 4; ++column) {
@@ -151,7 +151,7 @@ void print_convergence(const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fputs("Usage: papers_seed2 FOLDER   (of the figures' data)\n", stderr);
+    std::fputs("Usage: papers_chung FOLDER   (of the figures' data)\n", stderr);
     return 1;
   }
   try {
@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
     print_objects();
     print_convergence(folder);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "papers_seed2: %s\n", error.what());
+    std::fprintf(stderr, "papers_chung: %s\n", error.what());
     return 2;
   }
   return 0;

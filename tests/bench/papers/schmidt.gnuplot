@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Pictures of seed 1's Table 1, paper and simulation. Variables: data, residuals, errors (files).
+# Pictures of Schmidt, Vogt and Niemann's Table 1, paper and simulation. Variables: data, residuals, errors (files).
 set encoding utf8
 set style data histogram
 set style histogram clustered gap 1

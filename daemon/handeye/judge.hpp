@@ -9,7 +9,7 @@
 
 namespace handeye {
 
-/// What is wrong with a motion, in the order in which it is said (math.md section 10).
+/// What is wrong with a motion, in the order in which it is said (docs/math.md section 10).
 enum class MotionProblem {
   kNone,
   kNoMotion,              ///< nothing above the noise

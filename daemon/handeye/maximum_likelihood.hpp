@@ -58,7 +58,7 @@ struct MaximumLikelihoodResult {
   double sigma_translation_mm() const;  ///< square root of the trace of dt's block
 };
 
-/// Hand-eye over poses, not pairs (math.md section 4): for every pose k
+/// Hand-eye over poses, not pairs (docs/math.md section 4): for every pose k
 ///   room_from_hand_k * hand_from_eye = room_from_scene * scene_from_eye_k (scaled by 1/s),
 /// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene and, if
 /// wanted, s and a correction of the time offset. `observations` in order of time, unless their

@@ -5,9 +5,9 @@
 
 namespace handeye {
 
-/// How hand and eye noise appear in one pose's residual (ours, math.md section 4): rotation [rad]
-/// and the position of the camera [mm], camera against tracker, both in the hand frame. To first
-/// order the hand's rotation noise n turns it by -n and, at the end of the lever arm t =
+/// How hand and eye noise appear in one pose's residual (ours, docs/math.md section 4): rotation
+/// [rad] and the position of the camera [mm], camera against tracker, both in the hand frame. To
+/// first order the hand's rotation noise n turns it by -n and, at the end of the lever arm t =
 /// translation of hand_from_eye, moves it by [t]x n; the other noises are isotropic in either
 /// frame. So one 6x6 covariance serves all poses: noise of the latent poses is marginalised, not
 /// estimated.

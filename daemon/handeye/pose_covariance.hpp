@@ -10,8 +10,9 @@ namespace handeye {
 /// Covariance of the unknowns at the minimum of `problem`: H^-1 G H^-1, G the information of
 /// Gauss-Newton (the variance of the gradient), H the true Hessian. The two differ where the noise
 /// of the eye's path is mistaken for movement: near a fixed point G claims a scale that H knows
-/// nothing of (math.md section 10). The eye's share in the translation noise, which no residual
-/// shows, is one more source of error. Finite and huge along what the data do not determine.
+/// nothing of (docs/math.md section 10). The eye's share in the translation noise, which no
+/// residual shows, is one more source of error. Finite and huge along what the data do not
+/// determine.
 UnknownsMatrix covariance_of_unknowns(const PoseProblem& problem,
                                       const ResidualNoise::Variances& noise, bool noise_estimated);
 

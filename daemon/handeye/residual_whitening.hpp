@@ -9,7 +9,7 @@ namespace handeye {
 /// ResidualNoise as a function of the unknowns that it depends on: the lever arm, and the scale,
 /// by which the eye's noise shrinks with its path. Both sides of the equation carry noise; weights
 /// that stayed constant while the scale changed would let the answer drift to where the eye's path,
-/// noise and all, is scaled away (math.md sections 2 and 10: errors in both variables, a fixed
+/// noise and all, is scaled away (docs/math.md sections 2 and 10: errors in both variables, a fixed
 /// point). With these the sum of squares is the likelihood of the latent poses eliminated (Deming's
 /// regression), and so are its derivatives.
 class ResidualWhitening {

@@ -10,8 +10,8 @@ namespace handeye {
 /// the likelihood wanders along the scale by more than chance in the noise of the latent poses
 /// seems to allow, and its curvature anywhere says nothing about the rest; but its gradient with
 /// the other unknowns solved for has mean zero at the true scale and a variance that is known
-/// (score test; ours, math.md section 10). `noise`: at the solution; `inflation` of the variance
-/// for correlated errors.
+/// (score test; ours, docs/math.md section 10). `noise`: at the solution; `inflation` of the
+/// variance for correlated errors.
 double undecided_log_scale(const PoseProblem& solved, const MaximumLikelihoodOptions& options,
                            const ResidualNoise::Variances& noise, double inflation);
 

@@ -19,7 +19,7 @@ struct PosePair {
   Pose eye_from_scene{Pose::Identity()};  ///< scene units
 };
 
-/// Relative movement between two instants i and j (math.md, notation).
+/// Relative movement between two instants i and j (docs/math.md, notation).
 struct Movement {
   Pose hand_j_from_hand_i{Pose::Identity()};  ///< H; mm
   Pose eye_j_from_eye_i{Pose::Identity()};    ///< E; scene units

@@ -15,10 +15,10 @@ struct ClockModelOptions {
   double settling_s{0.1};  ///< the mapping follows a change of the envelope with this time constant
 };
 
-/// Maps a device clock to the host's CLOCK_MONOTONIC (math.md section 9): the lower envelope of
-/// (arrival - device time) over a sliding window, with drift. Arrivals are late by a constant plus
-/// a jitter that is never negative, so the envelope is the mapping plus the constant latency; that
-/// constant is part of the time offset which is estimated apart.
+/// Maps a device clock to the host's CLOCK_MONOTONIC (docs/math.md section 9): the lower envelope
+/// of (arrival - device time) over a sliding window, with drift. Arrivals are late by a constant
+/// plus a jitter that is never negative, so the envelope is the mapping plus the constant latency;
+/// that constant is part of the time offset which is estimated apart.
 ///
 /// Device time is seconds of the day and falls back to 0 at midnight; a jump of either clock
 /// restarts the window. Constant time and no allocation per observation.

@@ -43,8 +43,8 @@ struct PoseBufferOptions {
 };
 
 /// Ring of hand samples in time order; interpolates on SE(3) between neighbours, never across a gap
-/// or an untracked sample (math.md section 9). Storage is allocated once. Not synchronised: one
-/// owner.
+/// or an untracked sample (docs/math.md section 9). Storage is allocated once. Not synchronised:
+/// one owner.
 class PoseBuffer {
  public:
   explicit PoseBuffer(const PoseBufferOptions& options = {});

@@ -34,9 +34,9 @@ struct TimeOffset {
 };
 
 /// Time offset by correlating the magnitudes of the angular velocities of hand and eye, which are
-/// the same whatever hand_from_eye is (math.md section 9); sub-sample peak. Both speeds are taken
-/// over the same intervals, the hand's shifted, so that smoothing favours neither side. Nothing
-/// when the rotation is too small, the peak too low, ambiguous or at the end of the search.
+/// the same whatever hand_from_eye is (docs/math.md section 9); sub-sample peak. Both speeds are
+/// taken over the same intervals, the hand's shifted, so that smoothing favours neither side.
+/// Nothing when the rotation is too small, the peak too low, ambiguous or at the end of the search.
 ///
 /// Example: the tracker's stamps read 20 ms less than the camera's for the same instant, so a
 /// camera stamp t belongs to the hand pose stamped t - 0.020 s: time_offset_s is +0.020.

@@ -22,7 +22,7 @@ using handeye::Method;
 using handeye::PosePair;
 using handeye::ScaleMode;
 
-/// Athlon XP 2600+ (seed 1, Table 1), selection included.
+/// Athlon XP 2600+ (Schmidt 2005, Table 1), selection included.
 struct SeedTime {
   std::string_view method;
   double art1_ms;  ///< 190 images

@@ -10,7 +10,7 @@
 
 namespace handeye {
 
-/// A similarity as a dual quaternion that is not of unit norm (seed 1, eq 9): real = s q,
+/// A similarity as a dual quaternion that is not of unit norm (Schmidt 2005, eq 9): real = s q,
 /// dual = (1/2) Q(t) q, with q and t of X = eye_from_hand, t in the eye's units and s in its units
 /// per mm.
 struct SimilarityDualQuaternion {
@@ -35,9 +35,9 @@ struct DualQuaternionOptions {
   enum class Constraint { kPenalty, kManifold } constraint{Constraint::kPenalty};
 };
 
-/// Seed 1, eq 15, as printed: the sum over the movements of the squares of eqs 13 and 14, plus
-/// lambda (q_s q_sd* + q_sd q_s*)^2, lambda = 2e6. It adds rad^2 to the square of the eye's unit:
-/// give the eye in mm.
+/// Schmidt 2005, eq 15, as printed: the sum over the movements of the squares of eqs 13 and 14,
+/// plus lambda (q_s q_sd* + q_sd q_s*)^2, lambda = 2e6. It adds rad^2 to the square of the eye's
+/// unit: give the eye in mm.
 class DualQuaternionObjective {
  public:
   /// `about`: near R_X; settles the signs of the movements' quaternions near 180 degrees.

@@ -11,11 +11,11 @@
 /// minimiser never sees how many there were.
 namespace handeye {
 
-/// Weight of the paper's constraints (seed 1, eqs 7 and 15; Horaud and Dornaika 1995).
+/// Weight of the paper's constraints (Schmidt 2005, eqs 7 and 15; Horaud and Dornaika 1995).
 inline constexpr double kConstraintWeight = 2e6;
 
 /// Below this part of the start a scale has collapsed. Where a fixed point hides the scale
-/// (math.md section 10) the functions may fall for ever towards s = 0 and have no minimum.
+/// (docs/math.md section 10) the functions may fall for ever towards s = 0 and have no minimum.
 inline constexpr double kCollapsedScale = 1e-6;
 
 /// The n x n triangle with |triangle z| = |rows z| for every z. By QR, not by rows^T rows, which

@@ -24,7 +24,7 @@ struct QuaternionOptions {
   enum class UnitNorm { kPenalty, kManifold } unit_norm{UnitNorm::kPenalty};
 };
 
-/// Seed 1, eq 7, as printed:
+/// Schmidt 2005, eq 7, as printed:
 ///   f(q, t, s) = sum |q q_H - q_E q|^2 + sum |Q((I - R_E) t - t_E) + q Q(s t_H) q*|^2
 ///              + lambda (1 - q* q)^2,  lambda = 2e6.
 /// With s = 1 fixed it is the non-linear method of Horaud and Dornaika 1995 ("Hand-eye

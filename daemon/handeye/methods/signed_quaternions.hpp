@@ -20,7 +20,7 @@ SignedQuaternions signed_quaternions(const Movement& movement, const Eigen::Quat
 /// q_E q - q q_H as a matrix on q, w first.
 Eigen::Matrix4d rotation_rows(const SignedQuaternions& quaternions);
 
-/// (1/2) Q(t) q, the dual part of a rigid motion (seed 1, eq 8).
+/// (1/2) Q(t) q, the dual part of a rigid motion (Schmidt 2005, eq 8).
 Eigen::Quaterniond dual_part(const Eigen::Quaterniond& q, const Eigen::Vector3d& t);
 
 }  // namespace handeye

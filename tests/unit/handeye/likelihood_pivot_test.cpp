@@ -6,7 +6,7 @@
 #include "daemon/handeye/judge.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 
-/// About a fixed point, and nearly so (math.md section 10): what is claimed must be true.
+/// About a fixed point, and nearly so (docs/math.md section 10): what is claimed must be true.
 namespace handeye {
 namespace {
 

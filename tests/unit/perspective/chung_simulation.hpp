@@ -6,7 +6,7 @@
 #include "daemon/handeye/perspective/gauss_newton.hpp"
 #include "daemon/handeye/perspective/observations.hpp"
 
-/// The computer simulation of seed 2 (Chung, Table 1, and the hand-eye and movements printed
+/// The computer simulation of Chung's paper (its Table 1, and the hand-eye and movements printed
 /// there), and its printed results (Table 2). Also used by the paper's reproduction.
 namespace handeye::test::chung {
 

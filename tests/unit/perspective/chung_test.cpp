@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The computer simulation of seed 2: what its tables and figures show must come out.
+// The computer simulation of Chung's paper: what its tables and figures show must come out.
 #include <gtest/gtest.h>
 
 #include "daemon/handeye/perspective/gauss_newton.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/linear_parts.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -50,8 +51,10 @@ struct QuaternionFit {
   double residual{0};
 };
 
-/// q of sum |q_E q - q q_H|^2, signs as they are. Nothing when two or more q will do.
+/// q of sum |q_E q - q q_H|^2, signs as they are. Nothing when two or more q will do, as they do
+/// for fewer than two pairs.
 std::optional<QuaternionFit> fit(const std::vector<QuaternionPair>& pairs) {
+  if (pairs.size() < 2) return std::nullopt;
   Eigen::MatrixXd stacked(4 * static_cast<Eigen::Index>(pairs.size()), 4);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     stacked.middleRows<4>(4 * static_cast<Eigen::Index>(k)) =
@@ -110,6 +113,7 @@ RightSingular right_singular(const Eigen::MatrixXd& tall) {
 
 std::optional<Eigen::VectorXd> least_squares(const Eigen::MatrixXd& matrix,
                                              const Eigen::VectorXd& right) {
+  if (matrix.rows() < matrix.cols()) return std::nullopt;
   const Eigen::VectorXd column_norms = matrix.colwise().norm();
   if (!(column_norms.minCoeff() > 0)) return std::nullopt;
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix * column_norms.cwiseInverse().asDiagonal());

@@ -8,7 +8,7 @@
 
 #include "daemon/handeye/types.hpp"
 
-/// The linear steps that several methods share (seed 1, section 4; math.md sections 1 and 2). None
+/// The linear steps that several methods share (seed 1, section 4; docs/math.md sections 1 and 2). None
 /// forms normal equations for its result: those would square the condition and lose half the
 /// digits.
 namespace handeye {
@@ -28,14 +28,14 @@ struct RightSingular {
 };
 RightSingular right_singular(const Eigen::MatrixXd& tall);
 
-/// Least squares by QR with the columns scaled to one length. Nothing when a column is zero or the
-/// columns are dependent.
+/// Least squares by QR with the columns scaled to one length. Nothing when there are fewer
+/// rows than columns, a column is zero or the columns are dependent.
 std::optional<Eigen::VectorXd> least_squares(const Eigen::MatrixXd& matrix,
                                              const Eigen::VectorXd& right);
 
 /// R_X of R_X R_H = R_E R_X (eq 4), least squares in unit quaternions. The sign of each pair of
 /// quaternions, ambiguous near 180 degrees, is the one that agrees with the rotation found. Nothing
-/// when all axes are parallel.
+/// when all axes are parallel or there are fewer than two movements.
 std::optional<Eigen::Matrix3d> eye_from_hand_rotation(std::span<const Movement> movements);
 
 /// The same direction or turn in both frames: eye = R_X hand.
@@ -45,7 +45,7 @@ struct VectorPair {
 };
 
 /// The rotation R that minimises sum |eye - R hand|^2, as the unit quaternion q of
-/// sum |Q(eye) q - q Q(hand)|^2. Nothing when all vectors are parallel.
+/// sum |Q(eye) q - q Q(hand)|^2. Nothing when all vectors are parallel or fewer than two.
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const VectorPair> pairs);
 
 struct ScaleAndTranslation {

@@ -5,25 +5,20 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "daemon/handeye/usable.hpp"
+
 namespace handeye {
 namespace {
 
 // Only what exact data lack is refused here; what noise hides is for the judge, who knows it.
-constexpr double kRotationTolerance = 1e-6;  // of R^T R - I; poses from text files have as much
-constexpr double kMinRotation_rad = 1e-6;    // rms over the movements
-constexpr double kMinAxisSpread = 1e-6;      // second principal rotation to the first
+constexpr double kMinRotation_rad = 1e-6;  // rms over the movements
+constexpr double kMinAxisSpread = 1e-6;    // second principal rotation to the first
 
-bool is_rigid(const Pose& pose) {
-  if (!pose.matrix().allFinite()) return false;
-  const Eigen::Matrix3d& rotation = pose.linear();
-  const Eigen::Matrix3d excess = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
-  return excess.cwiseAbs().maxCoeff() <= kRotationTolerance && rotation.determinant() > 0;
-}
-
-bool rotates_about_two_axes(std::span<const Movement> movements) {
+/// Whether one side of the movements does.
+bool rotates_about_two_axes(std::span<const Movement> movements, Pose Movement::*side) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Movement& movement : movements) {
-    const Eigen::Vector3d w = log_so3(movement.hand_j_from_hand_i.linear());
+    const Eigen::Vector3d w = log_so3((movement.*side).linear());
     scatter += w * w.transpose() / static_cast<double>(movements.size());
   }
   const Eigen::Vector3d principal =
@@ -51,11 +46,14 @@ std::optional<NormalisedMovements> normalise(std::span<const Movement> movements
   double hand_squares = 0;
   double eye_squares = 0;
   for (const auto& [hand, eye] : movements) {
-    if (!is_rigid(hand) || !is_rigid(eye)) return std::nullopt;
+    if (!is_usable(hand) || !is_usable(eye)) return std::nullopt;
     hand_squares += hand.translation().squaredNorm();
     eye_squares += eye.translation().squaredNorm();
   }
-  if (!rotates_about_two_axes(movements)) return std::nullopt;
+  if (!rotates_about_two_axes(movements, &Movement::hand_j_from_hand_i) ||
+      !rotates_about_two_axes(movements, &Movement::eye_j_from_eye_i)) {
+    return std::nullopt;
+  }
   const auto n = static_cast<double>(movements.size());
   NormalisedMovements result{{movements.begin(), movements.end()},
                              std::sqrt(hand_squares / n),

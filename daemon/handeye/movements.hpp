@@ -10,7 +10,7 @@
 namespace handeye {
 
 /// Movements in units in which translations are about 1, so that no solver depends on the caller's
-/// units (math.md section 2): with unknown scale each side has rms 1 of its own, with known scale
+/// units (docs/math.md section 2): with unknown scale each side has rms 1 of its own, with known scale
 /// one unit serves both.
 struct NormalisedMovements {
   std::vector<Movement> movements;
@@ -23,8 +23,8 @@ struct NormalisedMovements {
 };
 
 /// Nothing when the movements cannot determine hand-eye whatever the method: fewer than two,
-/// numbers that are not finite, matrices that are not rotations, no rotation, all axes parallel,
-/// or, with unknown scale, one side that never translates.
+/// numbers that are not finite, matrices that are not rotations, one side that never rotates or
+/// whose axes are all parallel, or, with unknown scale, one that never translates.
 std::optional<NormalisedMovements> normalise(std::span<const Movement> movements,
                                              ScaleMode scale = ScaleMode::kUnknown);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/observability.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

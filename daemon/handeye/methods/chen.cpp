@@ -76,6 +76,7 @@ std::optional<HandEyeSolution> chen(const HandEyeProblem& problem) {
   const auto about = eye_from_hand_rotation(normalised->movements);
   if (!about) return std::nullopt;
   const std::vector<LinePair> lines = line_pairs(normalised->movements, Eigen::Quaterniond(*about));
+  if (lines.size() < 2) return std::nullopt;
   const auto rotation = rotation_of(lines);
   if (!rotation) return std::nullopt;
   const auto translation = translation_of_lines(lines, *rotation);

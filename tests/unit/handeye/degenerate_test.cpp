@@ -51,6 +51,39 @@ TEST(Degenerate, MethodsGiveNothingOnDegenerateMotion) {
   }
 }
 
+/// As a frozen image, or a tracker that repeats its last orientation, would have it.
+TEST(Degenerate, MethodsGiveNothingWhenOneSideDoesNotTurn) {
+  for (const ScaleMode mode : kModes) {
+    const std::vector<PosePair> good = exact_poses(mode, synthetic::free_hand);
+    std::vector<PosePair> frozen_eye = good;
+    std::vector<PosePair> eye_does_not_turn = good;
+    std::vector<PosePair> frozen_hand = good;
+    std::vector<PosePair> hand_does_not_turn = good;
+    for (std::size_t k = 0; k < good.size(); ++k) {
+      frozen_eye[k].eye_from_scene = good[0].eye_from_scene;
+      eye_does_not_turn[k].eye_from_scene.linear() = good[0].eye_from_scene.linear();
+      frozen_hand[k].room_from_hand = good[0].room_from_hand;
+      hand_does_not_turn[k].room_from_hand.linear() = good[0].room_from_hand.linear();
+    }
+    expect_nothing(mode, frozen_eye, "frozen eye");
+    expect_nothing(mode, eye_does_not_turn, "eye does not turn");
+    expect_nothing(mode, frozen_hand, "frozen hand");
+    expect_nothing(mode, hand_does_not_turn, "hand does not turn");
+  }
+}
+
+/// Of the two movements only one turns the eye: one line for Chen's method.
+TEST(Degenerate, MethodsGiveNothingWhenTheEyeTurnsOnce) {
+  for (const ScaleMode mode : kModes) {
+    auto movements = all_movements(exact_poses(mode, synthetic::free_hand));
+    movements = {movements[5], movements[200]};
+    movements[0].eye_j_from_eye_i.linear().setIdentity();
+    for (const Method& method : movement_methods(mode)) {
+      EXPECT_FALSE(method.solve({.movements = movements})) << label(method, mode);
+    }
+  }
+}
+
 /// The likelihood gives an answer with the covariance it has, which the judge refuses (judge_test).
 TEST(Degenerate, MethodsFromMovementsGiveNothingOnAFixedPointWithUnknownScale) {
   const auto movements = all_movements(exact_poses(ScaleMode::kUnknown, synthetic::pivot));

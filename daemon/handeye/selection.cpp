@@ -48,8 +48,9 @@ std::vector<Candidate> agreeing_pairs(std::span<const PosePair> poses,
   return candidates;
 }
 
-/// The angle window: at least the smallest angle, halved until there are enough; not near 180
-/// degrees unless nothing else is there.
+/// The angle window. When there are not enough it is opened to 180 degrees first: near it an axis
+/// is ambiguous, but a large turn says more than any small one. Then the smallest angle is halved
+/// until there are enough.
 std::vector<Candidate> in_window(const std::vector<Candidate>& candidates,
                                  const SelectionOptions& options) {
   const auto between = [&](double min_deg, double max_deg) {
@@ -62,11 +63,12 @@ std::vector<Candidate> in_window(const std::vector<Candidate>& candidates,
   };
   double min_angle_deg = options.min_angle_deg;
   std::vector<Candidate> kept = between(min_angle_deg, options.max_angle_deg);
+  if (kept.size() < options.enough) kept = between(min_angle_deg, 180.0);
   while (kept.size() < options.enough && min_angle_deg > options.lowest_min_angle_deg) {
     min_angle_deg = std::max(0.5 * min_angle_deg, options.lowest_min_angle_deg);
-    kept = between(min_angle_deg, options.max_angle_deg);
+    kept = between(min_angle_deg, 180.0);
   }
-  return kept.size() >= 2 ? kept : between(min_angle_deg, 180.0);
+  return kept;
 }
 
 /// Rotation vectors of one half-space, about whose axis they turn most: -w is the same movement

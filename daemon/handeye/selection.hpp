@@ -15,10 +15,10 @@ struct SelectionOptions {
   std::size_t max_poses{200};        ///< longer sequences are thinned evenly
   std::size_t max_candidates{4000};  ///< movements that are looked at
   std::size_t max_movements{500};
-  std::size_t enough{50};  ///< below so many the smallest angle is halved
+  std::size_t enough{50};  ///< below so many the largest angle goes, then the smallest is halved
   double min_angle_deg{15};
   double lowest_min_angle_deg{1};  ///< smaller turns say nothing, however few there are
-  double max_angle_deg{175};  ///< beyond it the axis is ambiguous; dropped where others are left
+  double max_angle_deg{175};  ///< beyond it the axis is ambiguous; left out where enough others are
   double tolerance{4};        ///< sigma within which hand and eye must agree (consensus.hpp)
 };
 

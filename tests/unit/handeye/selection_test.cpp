@@ -2,13 +2,16 @@
 #include "daemon/handeye/selection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "tests/unit/handeye/spoiled.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
+#include "tests/unit/handeye/tables.hpp"
 
 namespace handeye {
 namespace {
@@ -58,6 +61,55 @@ TEST(Selection, LowersTheSmallestAngleWhenTooFewAreLarger) {
   const auto movements = select_movements(poses).movements;
   EXPECT_GE(movements.size(), 50U);
   for (const Movement& movement : movements) EXPECT_GE(angle_deg(movement), 1.0);
+}
+
+/// Sixteen poses in four attitudes half a turn apart, and one turned by 2 degrees against one of
+/// them: within 175 degrees there is nothing but movements of 2 degrees.
+std::vector<PosePair> in_four_attitudes(const synthetic::Truth& truth, std::mt19937& generator) {
+  std::normal_distribution<double> normal;
+  const auto normal3 = [&] {
+    const double x = normal(generator);
+    const double y = normal(generator);
+    return Eigen::Vector3d(x, y, normal(generator));
+  };
+  std::vector<PosePair> poses;
+  for (int k = 0; k < 17; ++k) {
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    if (k % 4 > 0) turn[k % 4 - 1] = kPi;
+    if (k == 16) turn.setConstant(rad_from_deg(2) / std::sqrt(3.0));
+    PosePair pair;
+    pair.room_from_hand.linear() = exp_so3(turn);
+    pair.room_from_hand.translation() = 100 * normal3();
+    pair.eye_from_scene = truth.solution.hand_from_eye.inverse() * pair.room_from_hand.inverse() *
+                          truth.room_from_scene;
+    pair.eye_from_scene.translation() *= truth.solution.scale_units_per_mm;
+    poses.push_back(pair);
+  }
+  synthetic::add_noise(poses, synthetic::tracker_and_camera(), truth.solution.scale_units_per_mm,
+                       generator);
+  return poses;
+}
+
+TEST(Selection, TakesHalfTurnsRatherThanAFewSmallOnes) {
+  std::mt19937 generator(7);
+  for (const ScaleMode mode : tables::kModes) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const auto truth = synthetic::random_truth(generator, tables::scale_in(mode, 0.02));
+      const auto poses = in_four_attitudes(truth, generator);
+      const Selection selection = select_movements(poses, {.scale = mode});
+      EXPECT_GE(selection.movements.size(), 50U);
+      for (const Method& method : methods(mode)) {
+        const auto found = method.solve({.poses = poses, .movements = selection.movements});
+        ASSERT_TRUE(found) << tables::label(method, mode);
+        const Vector6d error =
+            synthetic::error_of(found->hand_from_eye, truth.solution.hand_from_eye);
+        EXPECT_LT(deg_from_rad(error.head<3>().norm()), 0.3) << tables::label(method, mode);
+        EXPECT_LT(error.tail<3>().norm(), 3.0) << tables::label(method, mode);
+        EXPECT_NEAR(found->scale_units_per_mm / truth.solution.scale_units_per_mm, 1.0, 0.02)
+            << tables::label(method, mode);
+      }
+    }
+  }
 }
 
 TEST(Selection, LeavesOutWhatDoesNotTurnAlike) {

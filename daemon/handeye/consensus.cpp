@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/handeye/consensus.hpp"
-
 #include <algorithm>
 
+#include "daemon/handeye/consensus.hpp"
 #include "daemon/handeye/explained.hpp"
 #include "daemon/handeye/pairing.hpp"
+#include "daemon/handeye/usable.hpp"
 
 namespace handeye {
 namespace {
@@ -18,25 +18,36 @@ struct Ballot {
   ScrewPair screw;
 };
 
-std::vector<std::size_t> finite_poses(std::span<const PosePair> poses) {
-  std::vector<std::size_t> finite;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (poses[i].room_from_hand.matrix().allFinite() &&
-        poses[i].eye_from_scene.matrix().allFinite()) {
-      finite.push_back(i);
-    }
-  }
-  return finite;
+bool comes_before(const Pose& a, const Pose& b) {
+  const double* of_a = a.matrix().data();
+  const double* of_b = b.matrix().data();
+  return std::lexicographical_compare(of_a, of_a + a.matrix().size(), of_b,
+                                      of_b + b.matrix().size());
 }
 
-std::vector<Ballot> ballots(std::span<const PosePair> poses, const std::vector<std::size_t>& finite,
-                            const ConsensusOptions& options) {
+/// By their numbers: which poses are compared must not depend on the order they are given in.
+std::vector<std::size_t> usable_in_order(std::span<const PosePair> poses) {
+  std::vector<std::size_t> usable;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (are_usable(poses.subspan(i, 1))) usable.push_back(i);
+  }
+  std::sort(usable.begin(), usable.end(), [&](std::size_t i, std::size_t j) {
+    const PosePair& a = poses[i];
+    const PosePair& b = poses[j];
+    if (comes_before(a.room_from_hand, b.room_from_hand)) return true;
+    if (comes_before(b.room_from_hand, a.room_from_hand)) return false;
+    return comes_before(a.eye_from_scene, b.eye_from_scene);
+  });
+  return usable;
+}
+
+std::vector<Ballot> ballots(std::span<const PosePair> poses, const ConsensusOptions& options) {
   const double min_angle_rad = rad_from_deg(options.min_angle_deg);
   std::vector<Ballot> result;
-  for (const auto& [a, b] : spread_pairs(finite.size(), options.partners)) {
-    const ScrewPair screw = screw_pair(movement_between(poses[finite[a]], poses[finite[b]]));
+  for (const auto& [i, j] : spread_pairs(poses.size(), options.partners)) {
+    const ScrewPair screw = screw_pair(movement_between(poses[i], poses[j]));
     if (std::max(screw.hand_angle_rad, screw.eye_angle_rad) < min_angle_rad) continue;
-    result.push_back({finite[a], finite[b], screw});
+    result.push_back({i, j, screw});
   }
   return result;
 }
@@ -85,11 +96,9 @@ std::size_t count_of(const std::vector<bool>& flags) {
 std::optional<std::vector<bool>> elected(const std::vector<Ballot>& all, std::vector<bool> right,
                                          ScrewAgreement agreement,
                                          const ConsensusOptions& options) {
-  const std::vector<bool> allowed = right;
   for (int round = 0; round < options.rounds; ++round) {
     right = vote(all, right, agreement, options);
-    for (std::size_t i = 0; i < right.size(); ++i) right[i] = right[i] && allowed[i];
-    if (2 * count_of(right) < count_of(allowed)) return std::nullopt;
+    if (2 * count_of(right) < right.size()) return std::nullopt;
     // The wrong ones are gone: what is left is right, and tells the noise better.
     agreement = agreement_among(all, right, options.scale, 0.5).value_or(agreement);
   }
@@ -98,12 +107,11 @@ std::optional<std::vector<bool>> elected(const std::vector<Ballot>& all, std::ve
 
 /// By what a solution from those elected explains.
 std::vector<bool> confirmed(std::span<const PosePair> poses, std::vector<bool> right,
-                            const std::vector<bool>& allowed, const ConsensusOptions& options) {
+                            const ConsensusOptions& options) {
   for (int round = 0; round < options.rounds; ++round) {
     auto now = explained_poses(poses, right, options.scale, options.pose_tolerance);
     if (!now) break;
-    for (std::size_t i = 0; i < right.size(); ++i) (*now)[i] = (*now)[i] && allowed[i];
-    if (2 * count_of(*now) < count_of(allowed) || *now == right) break;
+    if (2 * count_of(*now) < right.size() || *now == right) break;
     right = std::move(*now);
   }
   return right;
@@ -112,23 +120,27 @@ std::vector<bool> confirmed(std::span<const PosePair> poses, std::vector<bool> r
 }  // namespace
 
 Consensus find_consensus(std::span<const PosePair> poses, const ConsensusOptions& options) {
-  const std::vector<std::size_t> finite = finite_poses(poses);
-  std::vector<bool> allowed(poses.size(), false);
-  for (const std::size_t i : finite) allowed[i] = true;
+  const std::vector<std::size_t> usable = usable_in_order(poses);
+  std::vector<PosePair> sorted;
+  sorted.reserve(usable.size());
+  for (const std::size_t i : usable) sorted.push_back(poses[i]);
 
-  const std::vector<Ballot> all = ballots(poses, finite, options);
-  std::vector<bool> right = allowed;
+  const std::vector<Ballot> all = ballots(sorted, options);
+  std::vector<bool> right(sorted.size(), true);
   auto agreement = agreement_among(all, right, options.scale, options.certainly_right);
-  if (agreement && finite.size() >= kMinPoses) {
+  if (agreement && sorted.size() >= kMinPoses) {
     if (const auto majority = elected(all, right, *agreement, options)) {
-      right = confirmed(poses, *majority, allowed, options);
+      right = confirmed(sorted, *majority, options);
       agreement = agreement_among(all, right, options.scale, 0.5);
     }
   }
+
+  std::vector<bool> is_wrong(poses.size(), true);
+  for (std::size_t k = 0; k < usable.size(); ++k) is_wrong[usable[k]] = !right[k];
   Consensus consensus;
   consensus.agreement = agreement.value_or(ScrewAgreement{});
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!right[i]) consensus.wrong.push_back(i);
+    if (is_wrong[i]) consensus.wrong.push_back(i);
   }
   return consensus;
 }

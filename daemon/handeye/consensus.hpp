@@ -30,8 +30,9 @@ struct Consensus {
 /// movements to other poses (those that are right) hand and eye see differently: up to 20 % wrong
 /// poses leave a right pose four fifths of its movements, a wrong one hardly any, at worst those to
 /// poses that are wrong in the same way. Then those that a solution from the others does not
-/// explain (explained.hpp). The cost is linear in the number of poses. Poses that are not finite
-/// are wrong; where fewer than four are left, or fewer than half would be right, no other is.
+/// explain (explained.hpp). The cost is linear in the number of poses but for sorting them; their
+/// order does not matter. Poses that are not usable (usable.hpp) are wrong; where fewer than four
+/// are left, or fewer than half would be right, no other is.
 Consensus find_consensus(std::span<const PosePair> poses, const ConsensusOptions& options = {});
 
 /// The wrong poses alone.

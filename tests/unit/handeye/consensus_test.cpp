@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/handeye/consensus.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "daemon/handeye/consensus.hpp"
 #include "tests/unit/handeye/spoiled.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 
@@ -102,12 +102,45 @@ TEST(Consensus, FindsAFifthOfWrongPoses) {
   }
 }
 
-TEST(Consensus, CountsPosesThatAreNotFiniteAsWrong) {
+TEST(Consensus, DoesNotDependOnTheOrder) {
+  for (const ScaleMode mode : kModes) {
+    std::mt19937 generator(8);
+    const double scale = scale_of(mode);
+    for (const int count : {30, 150}) {
+      auto poses =
+          synthetic::random_poses(synthetic::scope(scale), generator, count, rad_from_deg(60));
+      synthetic::add_noise(poses, synthetic::tracker_and_camera(), scale, generator);
+      // A wrong shift of about the size that decides whether a pose is right.
+      for (std::size_t k = 0; k < poses.size(); k += 4) {
+        poses[k].eye_from_scene.translation().x() += 0.05 * static_cast<double>(k % 40) * scale;
+      }
+      const Consensus given = find_consensus(poses, {.scale = mode});
+      std::vector<std::size_t> order(poses.size());
+      std::iota(order.begin(), order.end(), 0);
+      for (int trial = 0; trial < 10; ++trial) {
+        std::shuffle(order.begin(), order.end(), generator);
+        std::vector<PosePair> shuffled;
+        for (const std::size_t i : order) shuffled.push_back(poses[i]);
+        const Consensus found = find_consensus(shuffled, {.scale = mode});
+        std::vector<std::size_t> wrong;
+        for (const std::size_t i : found.wrong) wrong.push_back(order[i]);
+        std::sort(wrong.begin(), wrong.end());
+        EXPECT_EQ(wrong, given.wrong) << count << " poses";
+        EXPECT_EQ(found.agreement.mm_per_unit, given.agreement.mm_per_unit);
+      }
+    }
+  }
+}
+
+TEST(Consensus, CountsNumbersThatAreNoPosesAsWrong) {
   std::mt19937 generator(4);
   auto poses = synthetic::random_poses(synthetic::scope(), generator, 20, rad_from_deg(60));
   poses[3].eye_from_scene.translation().x() = std::numeric_limits<double>::quiet_NaN();
   poses[11].room_from_hand.matrix()(0, 0) = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(wrong_poses(poses), (std::vector<std::size_t>{3, 11}));
+  poses[12].room_from_hand.linear().setZero();
+  poses[15].eye_from_scene.linear().col(2) *= -1.0;
+  EXPECT_EQ(wrong_poses(poses), (std::vector<std::size_t>{3, 11, 12, 15}));
+  EXPECT_EQ(wrong_poses(std::span(poses).subspan(10, 3)), (std::vector<std::size_t>{1, 2}));
 }
 
 TEST(Consensus, AccusesNobodyWithoutAMajority) {

@@ -19,8 +19,8 @@ std::optional<HandEyeSolution> finish_by_dual_quaternions(std::span<const Moveme
   const auto normalised = normalise(movements);
   if (!normalised) return std::nullopt;
   const double scale = scale_units_per_mm * normalised->hand_mm / normalised->eye_units;
-  const auto eye_from_hand = eye_from_hand_by_dual_quaternions(
-      metric_movements(normalised->movements, scale), about.transpose());
+  const auto eye_from_hand =
+      eye_from_hand_by_dual_quaternions(metric_movements(normalised->movements, scale), about);
   if (!eye_from_hand) return std::nullopt;
   return normalised->restore(*eye_from_hand, scale);
 }

@@ -16,14 +16,16 @@ constexpr std::array<Method, 10> kKnownScale{{
      ErrorModel::kQuaternions},
     {"horaud_nonlinear", horaud_nonlinear, "Horaud, Dornaika 1995, non-linear",
      ErrorModel::kQuaternionsJoint},
-    {"daniilidis", daniilidis, "Daniilidis 1999, eqs 31 to 36", ErrorModel::kDualQuaternions},
-    {"andreff", andreff_known_scale, "Andreff, Horaud, Espiau 1999 and 2001", ErrorModel::kEntries},
+    {"daniilidis", daniilidis, "Daniilidis 1999, eqs 31 to 36; rows weighted",
+     ErrorModel::kDualQuaternions},
+    {"andreff", andreff_known_scale, "Andreff, Horaud, Espiau 1999 and 2001; rows weighted",
+     ErrorModel::kEntries},
     {"maximum_likelihood", maximum_likelihood_known_scale, "ours: over poses, weighted by noise"},
 }};
 
 constexpr std::array<Method, 6> kUnknownScale{{
     {"dq_scale_separate", dq_scale_separate,
-     "Schmidt, Vogt, Niemann 2005, eqs 4 and 6; Daniilidis 1999",
+     "Schmidt, Vogt, Niemann 2005, eqs 4 and 6; Daniilidis 1999, rows weighted",
      ErrorModel::kScaleDualQuaternions},
     {"horaud_scale_separate", horaud_scale_separate,
      "Schmidt, Vogt, Niemann 2005, eqs 4 and 6; Horaud, Dornaika 1995, non-linear",

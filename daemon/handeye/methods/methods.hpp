@@ -5,9 +5,11 @@
 
 #include "daemon/handeye/types.hpp"
 
-/// The methods of the table (math.md section 4), each a Solver. All are exact on exact data and
-/// give nothing where the data do not determine the answer; those with unknown scale are
-/// indifferent to the unit of the scene.
+/// The methods of the table (docs/math.md section 4), each a Solver. All are exact on exact data;
+/// those with unknown scale are indifferent to the unit of the scene. Those that solve from
+/// movements give nothing where the data do not determine the answer. Maximum likelihood may give
+/// one with the covariance it has, say with unknown scale about a fixed point: the judge refuses
+/// it.
 namespace handeye {
 
 // Known scale: most find the rotation first, each in its own way, then the translation.
@@ -61,7 +63,7 @@ std::optional<HandEyeSolution> andreff(const HandEyeProblem& problem);
 
 // Both.
 
-/// Over poses, weighted by their noise (math.md section 4): the answer.
+/// Over poses, weighted by their noise (docs/math.md section 4): the answer.
 std::optional<HandEyeSolution> maximum_likelihood_known_scale(const HandEyeProblem& problem);
 std::optional<HandEyeSolution> maximum_likelihood_unknown_scale(const HandEyeProblem& problem);
 

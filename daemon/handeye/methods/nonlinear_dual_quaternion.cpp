@@ -16,8 +16,7 @@ std::optional<HandEyeSolution> nonlinear_dual_quaternion(const HandEyeProblem& p
       SimilarityDualQuaternion::from(q, eye_from_hand.translation(), 1.0));
   if (!found) return std::nullopt;
   const double scale = found->s() * start->scale_units_per_mm;
-  const Eigen::Matrix3d hand_from_eye = found->q().conjugate().toRotationMatrix();
-  return finish_by_dual_quaternions(problem.movements, scale, hand_from_eye);
+  return finish_by_dual_quaternions(problem.movements, scale, found->q().toRotationMatrix());
 }
 
 }  // namespace handeye

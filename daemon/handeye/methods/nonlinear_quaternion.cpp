@@ -15,8 +15,8 @@ std::optional<HandEyeSolution> nonlinear_quaternion(const HandEyeProblem& proble
   const auto found = QuaternionObjective(metric, q).minimise({q, eye_from_hand.translation(), 1.0});
   if (!found) return std::nullopt;
   const double scale = found->s * start->scale_units_per_mm;
-  const Eigen::Matrix3d hand_from_eye = found->q.normalized().conjugate().toRotationMatrix();
-  return finish_by_dual_quaternions(problem.movements, scale, hand_from_eye);
+  return finish_by_dual_quaternions(problem.movements, scale,
+                                    found->q.normalized().toRotationMatrix());
 }
 
 }  // namespace handeye

@@ -15,6 +15,15 @@
 namespace handeye {
 namespace {
 
+using sandwich::kLength;
+using sandwich::kScale;
+using sandwich::kShape;
+using sandwich::kShift;
+using sandwich::kTurn;
+using sandwich::kUnknowns;
+using sandwich::Rows;
+using sandwich::Stage;
+
 constexpr double kMinConditioning = 1e-13;  // of a stage's scaled normal equations
 
 // A pose's noise: hand's rotation, hand's translation, eye's rotation, eye's translation.
@@ -92,7 +101,8 @@ bool solve_stage(const Stage& stage, const std::vector<MovementErrors>& movement
   std::vector<Influence> gathered(influence.size(), no_influence());
   for (std::size_t k = 0; k < movements.size(); ++k) {
     const MovementErrors& movement = movements[k];
-    auto [of_error, of_shape] = linear_rows(stage.rows, movement.hand, eye_from_hand, unit_mm);
+    auto [of_error, of_shape] =
+        sandwich::linear_rows(stage.rows, movement.hand, eye_from_hand, unit_mm);
     if (stage.weighted) {
       of_error.bottomRows(3) *= units.weights[k];
       of_shape.bottomRows(3) *= units.weights[k];
@@ -108,7 +118,7 @@ bool solve_stage(const Stage& stage, const std::vector<MovementErrors>& movement
 
   normal(kLength, kLength) += kConstraintWeight;
 
-  const std::vector<Eigen::Index> own = unknowns_of(stage);
+  const std::vector<Eigen::Index> own = sandwich::unknowns_of(stage);
   const Eigen::MatrixXd own_normal = normal(own, own);
   const Eigen::VectorXd lengths = own_normal.diagonal().cwiseSqrt();
   if (!(lengths.minCoeff() > 0) || !lengths.allFinite()) return false;
@@ -173,7 +183,7 @@ std::optional<Matrix6d> sandwich_covariance(const Method& method, std::span<cons
                                             std::span<const std::array<std::size_t, 2>> pairs,
                                             const HandEyeSolution& solution,
                                             const PoseNoise& noise) {
-  const std::vector<Stage> all_stages = stages(method.error_model);
+  const std::vector<Stage> all_stages = sandwich::stages(method.error_model);
   if (all_stages.empty()) return std::nullopt;
   const bool free_scale =
       std::any_of(all_stages.begin(), all_stages.end(), [](const Stage& s) { return s.scale; });

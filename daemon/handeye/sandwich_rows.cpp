@@ -5,7 +5,7 @@
 
 #include <ceres/jet.h>
 
-namespace handeye {
+namespace handeye::sandwich {
 namespace {
 
 // Eigen's names for T that is a Jet.
@@ -214,4 +214,4 @@ LinearRows linear_rows(Rows rows, const Pose& hand_j_from_hand_i, const Pose& ey
   return linear;
 }
 
-}  // namespace handeye
+}  // namespace handeye::sandwich

@@ -3,7 +3,7 @@
 
 #include "daemon/handeye/types.hpp"
 
-namespace handeye {
+namespace handeye::sandwich {
 
 /// The equations whose squares the methods add up.
 enum class Rows {
@@ -35,4 +35,4 @@ struct LinearRows {
 LinearRows linear_rows(Rows rows, const Pose& hand_j_from_hand_i, const Pose& eye_from_hand,
                        double unit_mm);
 
-}  // namespace handeye
+}  // namespace handeye::sandwich

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/sandwich_stages.hpp"
 
-namespace handeye {
+namespace handeye::sandwich {
 
 std::vector<Stage> stages(ErrorModel model) {
   const Stage translation{.rows = Rows::kTranslation, .shift = true};
@@ -69,4 +69,4 @@ std::vector<Eigen::Index> unknowns_of(const Stage& stage) {
   return unknowns;
 }
 
-}  // namespace handeye
+}  // namespace handeye::sandwich

@@ -6,7 +6,7 @@
 #include "daemon/handeye/sandwich_rows.hpp"
 #include "daemon/handeye/types.hpp"
 
-namespace handeye {
+namespace handeye::sandwich {
 
 // The unknowns' errors: of X = eye_from_hand w (R_X -> Exp(w) R_X) and t (mm by the scale found),
 // of log s, of the shape where nine entries are free (LinearRows::of_shape), and of log |q|^2, by
@@ -35,4 +35,4 @@ std::vector<Stage> stages(ErrorModel model);
 /// Columns of the unknowns that the stage solves for.
 std::vector<Eigen::Index> unknowns_of(const Stage& stage);
 
-}  // namespace handeye
+}  // namespace handeye::sandwich

@@ -105,8 +105,7 @@ Configuration configuration_of(const Shape& shape, ScaleMode mode) {
   const double travel_mm = draw.power_of_ten(1, 3.7);
   const Eigen::Vector3d fixed_point = travel_mm * draw.direction();
 
-  // The likelihood works on poses and wants a few more than two movements have.
-  const int count = std::max(shape.movements, 5);
+  const int count = shape.movements;
   std::vector<Pose> room_from_hand{first};
   for (int k = 0; k < count; ++k) {
     const Eigen::Vector3d axis = (middle_axis + spread * draw.direction()).normalized();

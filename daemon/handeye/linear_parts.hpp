@@ -8,8 +8,8 @@
 
 #include "daemon/handeye/types.hpp"
 
-/// The linear steps that several methods share (seed 1, section 4; docs/math.md sections 1 and 2). None
-/// forms normal equations for its result: those would square the condition and lose half the
+/// The linear steps that several methods share (seed 1, section 4; docs/math.md sections 1 and 2).
+/// None forms normal equations for its result: those would square the condition and lose half the
 /// digits.
 namespace handeye {
 

@@ -10,8 +10,8 @@
 namespace handeye {
 
 /// Movements in units in which translations are about 1, so that no solver depends on the caller's
-/// units (docs/math.md section 2): with unknown scale each side has rms 1 of its own, with known scale
-/// one unit serves both.
+/// units (docs/math.md section 2): with unknown scale each side has rms 1 of its own, with known
+/// scale one unit serves both.
 struct NormalisedMovements {
   std::vector<Movement> movements;
   double hand_mm{1};    ///< one normalised unit of the hand

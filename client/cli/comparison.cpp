@@ -3,26 +3,16 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
+#include "client/cli/json_file.hpp"
 #include "protocol/exit_codes.hpp"
 
 namespace handeye::cli {
 namespace {
 
 using Json = nlohmann::json;
-
-Json read_json(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError("cannot read " + file.string() + ": is it there and readable?");
-  Json json = Json::parse(stream, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) {
-    throw InputError(file.string() + " is not a JSON object: a result or truth file is wanted");
-  }
-  return json;
-}
 
 template <std::size_t size>
 std::optional<std::array<double, size>> numbers(const Json& object, const char* key) {
@@ -59,7 +49,7 @@ Pose read_pose(const Json& json, const std::filesystem::path& file) {
 }  // namespace
 
 KnownCalibration read_calibration(const std::filesystem::path& file) {
-  const Json json = read_json(file);
+  const Json json = read_json_object(file, "a result or truth file");
   KnownCalibration known;
   known.hand_from_eye = read_pose(json, file);
   const auto verdict = json.find("verdict");

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +9,7 @@
 #include "client/cli/eye_options.hpp"
 #include "client/cli/intrinsics_text.hpp"
 #include "client/cli/options.hpp"
+#include "client/cli/result_output.hpp"
 #include "client/cli/status_text.hpp"
 #include "drivers/recording/recording.hpp"
 
@@ -35,10 +35,11 @@ ExitCode run_intrinsics(const IntrinsicsCommandOptions& options) {
   const bool accepted = intrinsics.problem == IntrinsicsProblem::kNone;
   if (accepted) write_camera_model(options.camera_file, intrinsics.camera);
   if (options.output.json) {
-    print_line(dump_json(intrinsics_json(intrinsics, board, images)));
+    print_text(dump_json(intrinsics_json(intrinsics, board, images)) + "\n");
   } else {
-    std::fputs(intrinsics_text(intrinsics, images, options.output.palette()).c_str(), stdout);
-    if (accepted) print_line(fmt::format("  written to {}", options.camera_file.string()));
+    std::string text = intrinsics_text(intrinsics, images, options.output.palette());
+    if (accepted) text += fmt::format("  written to {}\n", options.camera_file.string());
+    print_text(text);
   }
   return accepted ? ExitCode::kOk : ExitCode::kRefused;
 }

@@ -9,6 +9,18 @@
 #include "daemon/session/result_json.hpp"
 
 namespace handeye::cli {
+namespace {
+
+bool write_stdout(std::string_view text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+         std::fflush(stdout) == 0;
+}
+
+[[noreturn]] void throw_not_printed() {
+  throw InputError("cannot write to the standard output: is its disk full, or is it closed?");
+}
+
+}  // namespace
 
 ExitCode print_result(const CalibrationResult& result, const OutputOptions& output,
                       const std::filesystem::path& save) {
@@ -18,13 +30,15 @@ ExitCode print_result(const CalibrationResult& result, const OutputOptions& outp
 
 ExitCode print_result(Verdict verdict, const nlohmann::ordered_json& json, const std::string& text,
                       const OutputOptions& output, const std::filesystem::path& save) {
-  if (output.json) {
-    print_line(dump_json(json));
-  } else {
-    std::fputs(text.c_str(), stdout);
-  }
+  // A result that cannot be printed is still saved.
+  const bool printed = write_stdout(output.json ? dump_json(json) + "\n" : text);
   if (!save.empty()) save_json(save, json);
+  if (!printed) throw_not_printed();
   return verdict == Verdict::kAccepted ? ExitCode::kOk : ExitCode::kRefused;
+}
+
+void print_text(std::string_view text) {
+  if (!write_stdout(text)) throw_not_printed();
 }
 
 void save_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {

@@ -37,6 +37,10 @@ ExitCode run_solve(SolveCommandOptions options) {
   for (const PoseRow& row : read_pose_file(options.poses)) {
     poses.push_back({row.room_from_hand, row.eye_from_scene});
   }
+  if (poses.empty()) {
+    throw InputError(options.poses.string() +
+                     ": has no rows below the header; three poses are the least");
+  }
   const PoseSolution solution = solve_poses(poses, options.solve);
   return print_result(solution.calibration.verdict, solve_json(solution),
                       solve_text(solution, options.output.palette()), options.output, options.save);

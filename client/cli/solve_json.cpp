@@ -19,7 +19,8 @@ Json noise_json(const PoseSolution& solution) {
   if (estimated && !solution.calibration.has_estimate) return nullptr;
   return {{"hand", device_json(noise.hand_rotation_rad, noise.hand_translation_mm)},
           {"eye", device_json(noise.eye_rotation_rad, noise.eye_translation_mm)},
-          {"source", estimated ? "estimated" : "given"}};
+          {"source", estimated ? "estimated" : "given"},
+          {"exceeded_by", solution.noise_factor}};
 }
 
 /// Counted from 1, as people count rows.
@@ -33,7 +34,7 @@ Json rows_of(const std::vector<std::size_t>& poses) {
 
 Json solve_json(const PoseSolution& solution) {
   Json json = to_json(solution.calibration);
-  for (const char* field : {"request_id", "body_id", "camera", "frames", "features"}) {
+  for (const char* field : {"request_id", "body_id", "eye", "camera", "frames", "features"}) {
     json[field] = nullptr;
   }
   json["residuals"]["reprojection_px"] = nullptr;

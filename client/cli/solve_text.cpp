@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "client/cli/solve_text.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "client/cli/result_parts.hpp"
@@ -57,11 +59,17 @@ std::string device_text(double rotation_rad, double translation_mm) {
 
 std::string noise_text(const PoseSolution& solution) {
   const PoseNoise& noise = solution.noise;
+  const std::string exceeded =
+      solution.noise_factor > 1.0
+          ? row("", fmt::format("the residuals show {:.3g} times as much; every sigma is widened",
+                                solution.noise_factor))
+          : std::string();
   return row("noise per axis",
              fmt::format("hand {}, eye {}, {}",
                          device_text(noise.hand_rotation_rad, noise.hand_translation_mm),
                          device_text(noise.eye_rotation_rad, noise.eye_translation_mm),
-                         solution.noise_estimated ? "estimated" : "given"));
+                         solution.noise_estimated ? "estimated" : "given")) +
+         exceeded;
 }
 
 std::string estimate_text(const PoseSolution& solution, const Palette& palette) {
@@ -99,6 +107,8 @@ std::string residual_table(const CalibrationResult& result, const Palette& palet
 }
 
 std::string pose_table(const CalibrationResult& result, const Palette& palette) {
+  const auto solved = [](const MethodResult& method) { return method.solution.has_value(); };
+  if (std::ranges::none_of(result.methods, solved)) return {};
   std::string text = "\n  " +
                      palette.bold(fmt::format("{:<27}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>14}",
                                               "hand_from_eye", "x mm", "y mm", "z mm", "roll deg",

@@ -20,10 +20,12 @@ MethodResult run(const Method& method, const HandEyeProblem& problem) {
 
 std::optional<MethodSigma> sigma_of(const Method& method, const HandEyeSolution& solution,
                                     std::span<const PosePair> poses, const Selection& selection,
-                                    const PoseNoise& noise) {
-  const auto covariance = sandwich_covariance(method, poses, selection.pairs, solution, noise);
+                                    const ComparisonOptions& options) {
+  const auto covariance =
+      sandwich_covariance(method, poses, selection.pairs, solution, options.noise);
   if (!covariance || !covariance->allFinite()) return std::nullopt;
-  return MethodSigma{sigma_rotation_deg(*covariance), sigma_translation_mm(*covariance)};
+  return MethodSigma{options.sigma_factor * sigma_rotation_deg(*covariance),
+                     options.sigma_factor * sigma_translation_mm(*covariance)};
 }
 
 }  // namespace
@@ -40,7 +42,7 @@ std::vector<MethodResult> compare_methods(std::span<const Method> methods,
   for (const Method& method : methods) {
     MethodResult result = run(method, problem);
     if (options.sigma && result.solution) {
-      result.sigma = sigma_of(method, *result.solution, poses, selection, options.noise);
+      result.sigma = sigma_of(method, *result.solution, poses, selection, options);
     }
     results.push_back(std::move(result));
   }

@@ -13,7 +13,8 @@ struct ComparisonOptions {
   ScaleMode scale{ScaleMode::kUnknown};
   PoseNoise noise;
   bool estimate_noise{true};
-  bool sigma{false};  ///< carry the noise through each method's equations to its own sigma
+  bool sigma{false};       ///< carry the noise through each method's equations to its own sigma
+  double sigma_factor{1};  ///< every sigma times this: by what the residuals exceed the noise
 };
 
 /// Each method's answer to the same selection of movements, with its residuals over all poses and

@@ -41,7 +41,21 @@ std::span<const Method> others_of(std::span<const Method> chosen) {
   return chosen.back().name == kAnswer ? chosen.first(chosen.size() - 1) : chosen;
 }
 
+void require_plausible(const std::optional<DeviceNoise>& noise, std::string_view device) {
+  constexpr double kLeast = 1e-9;
+  constexpr double kMost = 1e6;
+  const auto plausible = [](double sigma) { return sigma >= kLeast && sigma <= kMost; };
+  if (noise && !(plausible(noise->rotation_deg) && plausible(noise->translation_mm))) {
+    throw UsageError(
+        fmt::format("the noise of the {} is {:g} deg, {:g} mm; each must be from {:g} "
+                    "to {:g}",
+                    device, noise->rotation_deg, noise->translation_mm, kLeast, kMost));
+  }
+}
+
 PoseNoise noise_from(const PoseSolveOptions& options) {
+  require_plausible(options.hand_noise, "hand");
+  require_plausible(options.eye_noise, "eye");
   PoseNoise noise;
   if (options.hand_noise) {
     noise.hand_rotation_rad = rad_from_deg(options.hand_noise->rotation_deg);
@@ -85,6 +99,16 @@ Answer answer_for(std::span<const PosePair> poses, const MaximumLikelihoodOption
   answer.likelihood = maximum_likelihood(answer.observations, options);
   answer.time_ms = stopwatch.elapsed_ms();
   return answer;
+}
+
+/// As the likelihood's covariance: given noise is believed within what chance explains; beyond it,
+/// the factor by which the residuals exceed it.
+double excess_over_given(const MaximumLikelihoodResult& result,
+                         const MaximumLikelihoodOptions& options) {
+  const double unknowns = options.estimate_scale ? 13.0 : 12.0;
+  const double freedom = std::max(1.0, 6.0 * static_cast<double>(result.poses_used) - unknowns);
+  const double chance = 1.0 + 3.3 * std::sqrt(2.0 / freedom);
+  return result.chi2_per_dof > chance ? std::sqrt(result.chi2_per_dof) : 1.0;
 }
 
 MethodResult method_result(const Answer& answer, const CalibrationResult& result) {
@@ -149,14 +173,19 @@ PoseSolution solve_poses(std::span<const PosePair> poses, const PoseSolveOptions
     for (const std::size_t k : answer.likelihood->rejected) {
       solution.rejected_poses.push_back(places[k]);
     }
-    solution.noise = answer.likelihood->noise;
+    if (solver.estimate_noise) {
+      solution.noise = answer.likelihood->noise;
+    } else {
+      solution.noise_factor = excess_over_given(*answer.likelihood, solver);
+    }
   }
   write_verdict(judgement.problem, result);
   result.methods = compare_methods(others_of(chosen), right,
                                    {.scale = options.scale,
                                     .noise = solution.noise,
                                     .estimate_noise = solver.estimate_noise,
-                                    .sigma = answer.likelihood || !solver.estimate_noise});
+                                    .sigma = answer.likelihood || !solver.estimate_noise,
+                                    .sigma_factor = solution.noise_factor});
   if (chosen.back().name == kAnswer) result.methods.push_back(method_result(answer, result));
   result.timings_ms = {.handeye = answer.time_ms, .total = stopwatch.elapsed_ms()};
   return solution;

@@ -21,8 +21,9 @@ struct DeviceNoise {
 struct PoseSolveOptions {
   ScaleMode scale{ScaleMode::kUnknown};
   std::optional<std::string> method;  ///< only this one of the table; nothing: all of them
-  /// Both given: believed, and the covariance follows from them. Else the noise is estimated from
-  /// the residuals; one alone is where its estimate starts.
+  /// Both given: every sigma follows from them, widened where the residuals exceed what they
+  /// explain by more than chance. Else the noise is estimated from the residuals; one alone is
+  /// where its estimate starts. Each number within 1e-9 and 1e6.
   std::optional<DeviceNoise> hand_noise;
   std::optional<DeviceNoise> eye_noise;
   WantedSigma wanted;
@@ -44,10 +45,14 @@ struct PoseSolution {
   std::size_t poses_used{0};   ///< by maximum_likelihood; 0: it found no answer
   PoseNoise noise;             ///< as given, or as estimated
   bool noise_estimated{true};  ///< false: given
+  /// By what factor the residuals are larger than the given noise explains; 1: within chance, or
+  /// the noise was estimated. The covariance and the methods' sigmas are widened by it.
+  double noise_factor{1};
 };
 
 /// Solves by the methods of the table, by maximum likelihood, and judges that. The order of the
-/// poses says nothing about time. Throws UsageError for a method that the table does not have.
+/// poses says nothing about time. Throws UsageError for a method that the table does not
+/// have or noise out of its range.
 PoseSolution solve_poses(std::span<const PosePair> poses, const PoseSolveOptions& options);
 
 }  // namespace handeye

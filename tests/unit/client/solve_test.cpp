@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `handeye solve` as people and scripts see it: text, JSON, the table of methods, mistakes.
+#include <cstdlib>
+#include <filesystem>
+#include <sys/wait.h>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,6 +74,22 @@ TEST(SolveText, ARefusalSaysWhyAndMarksTheEstimate) {
   EXPECT_LT(text.find("must not be used"), text.find("hand_from_eye"));
 }
 
+TEST(SolveText, TellsByHowMuchTheResidualsExceedTheNoiseGiven) {
+  PoseSolution solution = accepted_solution();
+  solution.noise_estimated = false;
+  EXPECT_THAT(solve_text(solution, kPlain), Not(HasSubstr("times as much")));
+  solution.noise_factor = 2.5;
+  EXPECT_THAT(solve_text(solution, kPlain), HasSubstr("the residuals show 2.5 times as much"));
+}
+
+TEST(SolveText, HasNoTableOfPosesWhereNothingHasASolution) {
+  PoseSolution solution{.poses = 2};
+  solution.calibration.methods = {{"andreff", {}, {}, 0.5, {}}};
+  const std::string text = solve_text(solution, kPlain);
+  EXPECT_THAT(text, ContainsRegex("andreff +no solution\n"));
+  EXPECT_THAT(text, Not(HasSubstr("units per mm")));
+}
+
 TEST(SolveText, KnownScaleIsNotShownAsAnEstimate) {
   PoseSolution solution = accepted_solution();
   solution.scale = ScaleMode::kKnown;
@@ -91,8 +111,9 @@ TEST(SolveJson, IsAResultWithNullWhereNothingWasSeen) {
   EXPECT_EQ(json["poses"]["wrong_rows"], (std::vector<int>{7, 12, 30}));
   EXPECT_NEAR(json["noise"]["hand"]["rotation_deg"], 0.05, 1e-12);
   EXPECT_EQ(json["noise"]["source"], "estimated");
+  EXPECT_EQ(json["noise"]["exceeded_by"], 1.0);
   for (const char* field :
-       {"request_id", "body_id", "camera", "frames", "features", "time_offset_s"}) {
+       {"request_id", "body_id", "eye", "camera", "frames", "features", "time_offset_s"}) {
     EXPECT_TRUE(json.at(field).is_null()) << field;
   }
   EXPECT_TRUE(json["residuals"].at("reprojection_px").is_null());
@@ -142,6 +163,8 @@ TEST(MethodsTable, IsTheDocumentationsTable) {
   }
 }
 
+constexpr const char* kRow = "1,0,0,0,0,0,0,1,0,0,0,0,0,0\n";
+
 class SolveCommand : public ::testing::Test {
  protected:
   std::string poses(const std::string& rows) const {
@@ -166,12 +189,14 @@ TEST_F(SolveCommand, ListsTheMethodsWithoutAFile) {
 }
 
 TEST_F(SolveCommand, MistakesAreExitCode1) {
-  const std::string file = poses("");
+  const std::string file = poses(kRow);
   const std::vector<std::vector<std::string>> mistakes{
       {"solve"},
       {"solve", file, "--scale", "maybe"},
       {"solve", file, "--hand-noise", "0.1"},
       {"solve", file, "--eye-noise", "0.1,0"},
+      {"solve", file, "--eye-noise", "1e-12,0.1"},
+      {"solve", file, "--hand-noise", "0.1,1e9"},
       {"solve", file, "--sigma", "1;2"},
       {"solve", file, "another.csv"},
       {"solve", file, "--method", "newton"},
@@ -193,11 +218,27 @@ TEST_F(SolveCommand, FilesThatCannotBeUsedAreExitCode2AndNamed) {
       test::run_handeye({"solve", poses("1,0,0,0,0,0,0,1,0,0,zero,0,0,0\n")});
   expect_one_line(damaged, 2);
   EXPECT_THAT(damaged.err, HasSubstr("poses.csv: line 2, column 11 (eye_qz): 'zero'"));
+  const test::Finished empty = test::run_handeye({"solve", poses("")});
+  expect_one_line(empty, 2);
+  EXPECT_THAT(empty.err, HasSubstr("poses.csv: has no rows"));
+}
+
+TEST_F(SolveCommand, AResultThatCannotBePrintedIsExitCode2AndStillSaved) {
+  const std::string saved = folder_ / "result.json";
+  const std::string command =
+      fmt::format("{} solve {} --save {}", HANDEYE_PROGRAM, poses(kRow), saved);
+  for (const char* json : {"", " --json"}) {
+    const int status = std::system((command + json + " >/dev/full 2>/dev/null").c_str());
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    EXPECT_EQ(nlohmann::json::parse(test::read_text(saved)).at("verdict"), "refused");
+    std::filesystem::remove(saved);
+  }
 }
 
 TEST_F(SolveCommand, TooFewPosesAreRefusedWithAReason) {
-  const std::string row = "1,0,0,0,0,0,0,1,0,0,0,0,0,0\n";
-  for (const std::string& rows : {std::string(), row, row + row, row + row + row}) {
+  const std::string row = kRow;
+  for (const std::string& rows : {row, row + row, row + row + row}) {
     const test::Finished finished = test::run_handeye({"solve", poses(rows), "--json"});
     EXPECT_EQ(finished.exit_code, 3);
     EXPECT_EQ(nlohmann::json::parse(finished.out).at("reason"), "no_motion");

@@ -200,6 +200,42 @@ TEST(PoseSolve, NoiseThatIsGivenIsBelieved) {
               0.05);
 }
 
+TEST(PoseSolve, ResidualsBeyondTheNoiseGivenWidenEverySigmaAlike) {
+  const PoseNoise truth = synthetic::tracker_and_camera();
+  const auto poses = poses_of(synthetic::free_hand, ScaleMode::kKnown, 100, truth);
+  const auto given = [&](double factor) {
+    PoseSolveOptions options{.scale = ScaleMode::kKnown};
+    options.hand_noise = DeviceNoise{factor * deg_from_rad(truth.hand_rotation_rad),
+                                     factor * truth.hand_translation_mm};
+    // Shared out between the positions of hand and eye by nothing but what was given.
+    options.eye_noise = DeviceNoise{factor * deg_from_rad(truth.eye_rotation_rad),
+                                    factor * 3 * truth.eye_translation_mm};
+    return solve_poses(poses, options);
+  };
+  const PoseSolution fair = given(1);
+  const PoseSolution small = given(0.2);
+  EXPECT_DOUBLE_EQ(fair.noise_factor, 1);
+  EXPECT_DOUBLE_EQ(fair.noise.eye_translation_mm, 3 * truth.eye_translation_mm);
+  EXPECT_GT(small.noise_factor, 1.5);
+  EXPECT_LT(small.noise_factor, 5.5);
+  EXPECT_DOUBLE_EQ(small.noise.hand_translation_mm, 0.2 * truth.hand_translation_mm);
+  ASSERT_EQ(fair.calibration.methods.size(), small.calibration.methods.size());
+  for (std::size_t i = 0; i + 1 < fair.calibration.methods.size(); ++i) {
+    const MethodResult& method = small.calibration.methods[i];
+    if (!method.sigma || !fair.calibration.methods[i].sigma) continue;
+    EXPECT_NEAR(method.sigma->rotation_deg / fair.calibration.methods[i].sigma->rotation_deg,
+                0.2 * small.noise_factor, 0.1 * 0.2 * small.noise_factor)
+        << method.name;
+  }
+}
+
+TEST(PoseSolve, NoiseThatNothingHasIsAMistake) {
+  for (const double bad : {0.0, 1e-10, 1e7, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(solve_poses({}, {.hand_noise = DeviceNoise{bad, 0.1}}), UsageError) << bad;
+    EXPECT_THROW(solve_poses({}, {.eye_noise = DeviceNoise{0.1, bad}}), UsageError) << bad;
+  }
+}
+
 TEST(PoseSolve, SigmaWantedDecides) {
   const auto poses = poses_of(synthetic::free_hand, ScaleMode::kKnown, 200);
   const CalibrationResult accepted = solve_poses(poses, {.scale = ScaleMode::kKnown}).calibration;

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/geometry/board.hpp"
 
-#include <array>
+#include <algorithm>
 #include <charconv>
-#include <optional>
 #include <sstream>
 
 namespace handeye {
 namespace {
 
-constexpr int kMostCorners = 100;  // along a side
-constexpr int kFewestCorners = 2;
-constexpr double kLargestSquare_mm = 1000;
-
-constexpr std::array<std::string_view, 21> kDictionaries{
-    "DICT_4X4_50",         "DICT_4X4_100",       "DICT_4X4_250",       "DICT_4X4_1000",
-    "DICT_5X5_50",         "DICT_5X5_100",       "DICT_5X5_250",       "DICT_5X5_1000",
-    "DICT_6X6_50",         "DICT_6X6_100",       "DICT_6X6_250",       "DICT_6X6_1000",
-    "DICT_7X7_50",         "DICT_7X7_100",       "DICT_7X7_250",       "DICT_7X7_1000",
-    "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16H5", "DICT_APRILTAG_25H9", "DICT_APRILTAG_36H10",
-    "DICT_APRILTAG_36H11"};
+constexpr int kMostCorners = 100;            // along a side
+constexpr int kFewestChessboardCorners = 3;  // OpenCV's search asks for them
+constexpr int kFewestCharucoCorners = 2;
+constexpr double kSmallestLength_mm = 0.01;
+constexpr double kLargestLength_mm = 1000;
+constexpr std::size_t kLongestEcho = 60;
 
 constexpr std::string_view kForms =
     "chessboard:COLSxROWS:SQUARE_MM or charuco:COLSxROWS:SQUARE_MM:MARKER_MM:DICTIONARY";
@@ -43,14 +37,37 @@ std::optional<Number> number(std::string_view text) {
 }
 
 bool is_length(const std::optional<double>& value_mm) {
-  return value_mm && *value_mm > 0 && *value_mm <= kLargestSquare_mm;
+  return value_mm && *value_mm >= kSmallestLength_mm && *value_mm <= kLargestLength_mm;
+}
+
+/// The text comes from anybody on the network, and ends in logs, terminals and JSON.
+std::string echo(std::string_view text) {
+  std::string clean(text.substr(0, kLongestEcho));
+  std::ranges::replace_if(
+      clean, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kLongestEcho ? clean + "..." : clean;
 }
 
 std::string problem(std::string_view text, std::string_view what) {
-  return "board '" + std::string(text) + "': " + std::string(what);
+  return "board '" + echo(text) + "': " + std::string(what);
+}
+
+// Apart: GCC 12 warns of a string plus a temporary number.
+std::string number_text(int value) {
+  return std::to_string(value);
+}
+
+int fewest_corners(Board::Kind kind) {
+  return kind == Board::Kind::kChessboard ? kFewestChessboardCorners : kFewestCharucoCorners;
 }
 
 }  // namespace
+
+std::optional<int> dictionary_index(std::string_view name) {
+  const auto* const found = std::ranges::find(kMarkerDictionaries, name, &MarkerDictionary::name);
+  if (found == kMarkerDictionaries.end()) return std::nullopt;
+  return static_cast<int>(found - kMarkerDictionaries.begin());
+}
 
 std::vector<Eigen::Vector3d> Board::corners_mm() const {
   std::vector<Eigen::Vector3d> corners;
@@ -79,25 +96,31 @@ std::variant<Board, std::string> parse_board(std::string_view text) {
   if (!columns || !rows) return problem(text, "COLSxROWS must be two whole numbers, e.g. 9x6");
   board.columns = *columns;
   board.rows = *rows;
-  if (board.corner_columns() < kFewestCorners || board.corner_rows() < kFewestCorners ||
-      board.columns > kMostCorners || board.rows > kMostCorners) {
-    return problem(text, "must have 2 to 100 inner corners along each side");
+  const int fewest = fewest_corners(board.kind);
+  if (std::min(*columns, *rows) < 1 || std::max(*columns, *rows) > kMostCorners ||
+      std::min(board.corner_columns(), board.corner_rows()) < fewest) {
+    return problem(text,
+                   "must have " + number_text(fewest) + " to 100 inner corners along each side");
   }
   const auto square_mm = number<double>(fields[2]);
-  if (!is_length(square_mm)) return problem(text, "SQUARE_MM must be a length up to 1000");
+  if (!is_length(square_mm)) return problem(text, "SQUARE_MM must be a length from 0.01 to 1000");
   board.square_mm = *square_mm;
   if (board.kind == Board::Kind::kChessboard) return board;
 
   const auto marker_mm = number<double>(fields[3]);
-  if (!is_length(marker_mm) || *marker_mm >= board.square_mm) {
-    return problem(text, "MARKER_MM must be a length below SQUARE_MM");
+  // OpenCV compares them in single precision.
+  if (!is_length(marker_mm) ||
+      static_cast<float>(*marker_mm) >= static_cast<float>(board.square_mm)) {
+    return problem(text, "MARKER_MM must be a length from 0.01 to below SQUARE_MM");
   }
   board.marker_mm = *marker_mm;
-  for (const std::string_view known : kDictionaries) {
-    if (known == fields[4]) board.dictionary = known;
-  }
-  if (board.dictionary.empty()) {
-    return problem(text, "DICTIONARY must be one of ArUco's, e.g. DICT_4X4_50");
+  const auto dictionary = dictionary_index(fields[4]);
+  if (!dictionary) return problem(text, "DICTIONARY must be one of ArUco's, e.g. DICT_4X4_50");
+  const MarkerDictionary& markers = kMarkerDictionaries[static_cast<std::size_t>(*dictionary)];
+  board.dictionary = markers.name;
+  if (board.markers() > markers.markers) {
+    return problem(text, "needs " + number_text(board.markers()) + " markers, " + board.dictionary +
+                             " has " + number_text(markers.markers));
   }
   return board;
 }

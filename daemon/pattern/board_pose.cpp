@@ -61,7 +61,8 @@ double squares_px2(const Pose& eye_from_board, const std::vector<Eigen::Vector3d
   return sum;
 }
 
-/// Both planar solutions, refined, the better one first.
+/// Both planar solutions, refined, the better one first. Throws cv::Exception for corners that
+/// OpenCV makes nothing of.
 std::vector<Fit> fits(const std::vector<Eigen::Vector3d>& corners_mm,
                       const std::vector<BoardCorner>& corners, const CameraModel& camera) {
   const CornerPairs pairs = pair_corners(corners_mm, corners);
@@ -84,6 +85,15 @@ std::vector<Fit> fits(const std::vector<Eigen::Vector3d>& corners_mm,
   return found;
 }
 
+std::vector<Fit> fits_or_none(const std::vector<Eigen::Vector3d>& corners_mm,
+                              const std::vector<BoardCorner>& corners, const CameraModel& camera) {
+  try {
+    return fits(corners_mm, corners, camera);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
 bool is_same(const Fit& a, const Fit& b) {
   return rotation_angle_rad(a.eye_from_board.linear(), b.eye_from_board.linear()) < kSamePose_rad;
 }
@@ -94,7 +104,7 @@ std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector3d>& corners_
                                     const std::vector<BoardCorner>& corners,
                                     const CameraModel& camera, const BoardPoseOptions& options) {
   if (corners.size() < kFewestCorners || on_one_line(corners_mm, corners)) return std::nullopt;
-  const std::vector<Fit> found = fits(corners_mm, corners, camera);
+  const std::vector<Fit> found = fits_or_none(corners_mm, corners, camera);
   if (found.empty()) return std::nullopt;
   const Fit& best = found.front();
   const auto count = static_cast<double>(corners.size());

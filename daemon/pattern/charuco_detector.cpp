@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <map>
-#include <string_view>
 
 #include <opencv2/aruco/charuco.hpp>
 
@@ -19,38 +17,14 @@ constexpr std::size_t kFewestCorners = 6;
 // Of the gap between a corner and the nearest marker, which must stay outside.
 constexpr double kWindow = 0.9;
 
-int predefined_dictionary(std::string_view name) {
-  static const std::map<std::string_view, int> kByName{
-      {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
-      {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
-      {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
-      {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
-      {"DICT_5X5_50", cv::aruco::DICT_5X5_50},
-      {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
-      {"DICT_5X5_250", cv::aruco::DICT_5X5_250},
-      {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
-      {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
-      {"DICT_6X6_100", cv::aruco::DICT_6X6_100},
-      {"DICT_6X6_250", cv::aruco::DICT_6X6_250},
-      {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
-      {"DICT_7X7_50", cv::aruco::DICT_7X7_50},
-      {"DICT_7X7_100", cv::aruco::DICT_7X7_100},
-      {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
-      {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
-      {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
-      {"DICT_APRILTAG_16H5", cv::aruco::DICT_APRILTAG_16h5},
-      {"DICT_APRILTAG_25H9", cv::aruco::DICT_APRILTAG_25h9},
-      {"DICT_APRILTAG_36H10", cv::aruco::DICT_APRILTAG_36h10},
-      {"DICT_APRILTAG_36H11", cv::aruco::DICT_APRILTAG_36h11}};
-  return kByName.at(name);
-}
+static_assert(kMarkerDictionaries.size() == cv::aruco::DICT_APRILTAG_36h11 + 1);
 
 class CharucoDetector final : public BoardDetector {
  public:
   CharucoDetector(const Board& board, const BoardDetectorOptions& options)
       : board_(board),
         options_(options),
-        dictionary_(cv::aruco::getPredefinedDictionary(predefined_dictionary(board.dictionary))),
+        dictionary_(cv::aruco::getPredefinedDictionary(dictionary_index(board.dictionary).value())),
         charuco_(cv::aruco::CharucoBoard::create(board.columns, board.rows,
                                                  static_cast<float>(board.square_mm),
                                                  static_cast<float>(board.marker_mm), dictionary_)),

@@ -15,6 +15,8 @@ namespace {
 constexpr int kPlainWidth_px = 480;
 constexpr int kNearWidth_px = 640;
 constexpr int kFarWidth_px = 1280;  // a board that fills a quarter of the view
+// A side of what an image is evened out by; of one pixel alone nothing would be left.
+constexpr int kLeastEvened_px = 3;
 // Of the spacing: room for the corner, and to err in the shrunk image.
 constexpr double kWindow = 0.2;
 
@@ -59,7 +61,7 @@ class ChessboardDetector final : public BoardDetector {
     const int columns = search_image_.shrink(grey, width).cols;
     // Two squares of a board that fills the image: never all dark or all light.
     const int most_squares = std::max(board_.columns, board_.rows) + 1;
-    return search_in(search_image_.even_out(2 * columns / most_squares));
+    return search_in(search_image_.even_out(std::max(kLeastEvened_px, 2 * columns / most_squares)));
   }
   bool search_in(const cv::Mat& searched) {
     if (!cv::findChessboardCorners(searched, size(), pixels_, kQuick)) return false;

@@ -66,8 +66,10 @@ double sigma_progress(const CalibrationProgress& progress, const WantedSigma& wa
   return std::clamp(ratio * ratio, 0.0, 1.0);
 }
 
-/// False, and why: the request names no eye that there is, or no board for it.
+/// What a START is to look at. False, and why: the request names no eye that there is, or no board
+/// for it.
 bool read_board(const request_t& message, std::optional<Board>& board, std::string& problem) {
+  if (message.action != request_t::START) return true;
   if (message.eye == request_t::EYE_SFM) {
     if (!message.board.empty())
       problem = "a board is for eye " + std::to_string(request_t::EYE_PATTERN);

@@ -2,6 +2,7 @@
 #include "daemon/service/vision_thread.hpp"
 
 #include <opencv2/imgcodecs.hpp>
+#include <spdlog/spdlog.h>
 
 namespace handeye {
 namespace {
@@ -41,8 +42,9 @@ void VisionThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     Frame* frame = frames_.take(kWait);
     if (frame == nullptr) continue;
-    if (const std::uint64_t calibration = collecting_) track(*frame, calibration);
+    // First, for a search may take long, and a recording should have every frame.
     if (publisher_ && monotonic_ns() < record_until_ns_) publish(*frame);
+    if (const std::uint64_t calibration = collecting_) track(*frame, calibration);
     frames_.release(frame);
   }
 }
@@ -56,7 +58,7 @@ void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
   TrackedItem* item = tracked_.acquire();
   // The tracker must see every frame, also one that the solver has no room for.
   TrackedFrame& target = item != nullptr ? item->frame : overflow_;
-  stage_->process(frame, target);
+  process(frame, target);
   features_tracked_ = static_cast<int>(target.observations.size());
   ++frames_collected_;
   if (item == nullptr) {
@@ -66,6 +68,15 @@ void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
   item->calibration = calibration;
   item->tracking_ms = stage_->time_ms();
   tracked_.commit(item);
+}
+
+void VisionThread::process(const Frame& frame, TrackedFrame& tracked) {
+  const std::int64_t failures = stage_->failures();
+  stage_->process(frame, tracked);
+  // Once a calibration: what ails one image ails the next.
+  if (failures == 0 && stage_->failures() > 0) {
+    spdlog::warn("an image could not be searched for the board: {}", stage_->failure());
+  }
 }
 
 void VisionThread::publish(const Frame& frame) {

@@ -26,9 +26,9 @@ struct TrackedItem {
   double tracking_ms{0};  ///< spent so far in this calibration
 };
 
-/// Takes frames from the camera; while collecting tracks features, or finds a board's corners, and
-/// hands them to the solver;
-/// while recording publishes the frames of a camera that is not on LCM already.
+/// Takes frames from the camera; while recording publishes those of a camera that is not on LCM
+/// already; while collecting tracks features, or finds a board's corners, and hands them to the
+/// solver.
 class VisionThread {
  public:
   struct Options {
@@ -55,6 +55,7 @@ class VisionThread {
  private:
   void run(const std::stop_token& stop);
   void track(const Frame& frame, std::uint64_t calibration);
+  void process(const Frame& frame, TrackedFrame& tracked);
   void publish(const Frame& frame);
 
   Exchange<Frame>& frames_;

@@ -8,13 +8,16 @@
 
 namespace handeye {
 
-/// Finds a board's corners in every image, as BoardEye takes them.
+/// Finds a board's corners in every image, as BoardEye takes them. In an image that OpenCV throws
+/// at there are none.
 class BoardStage final : public ImageStage {
  public:
   explicit BoardStage(const Board& board) : detector_(make_board_detector(board)) {}
+  explicit BoardStage(std::unique_ptr<BoardDetector> detector) : detector_(std::move(detector)) {}
 
  private:
   void look(const Frame& frame, TrackedFrame& tracked) override;
+  void find_corners(const Frame& frame);
 
   std::unique_ptr<BoardDetector> detector_;
   std::vector<BoardCorner> corners_;

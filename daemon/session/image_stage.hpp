@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "daemon/geometry/board.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
@@ -25,10 +28,23 @@ class ImageStage {
   /// Wall time spent so far [ms].
   double time_ms() const { return time_ms_; }
 
+  /// Images that OpenCV refused to work on; each counts as one that shows nothing.
+  std::int64_t failures() const { return failures_; }
+  /// The last of them, in words.
+  const std::string& failure() const { return failure_; }
+
+ protected:
+  void count_failure(std::string what) {
+    ++failures_;
+    failure_ = std::move(what);
+  }
+
  private:
   virtual void look(const Frame& frame, TrackedFrame& tracked) = 0;
 
   double time_ms_{0};
+  std::int64_t failures_{0};
+  std::string failure_;
 };
 
 /// Features of whatever is in view, or, given a board, its corners. `mask`: CV_8UC1, 255 = usable;

@@ -2,9 +2,7 @@
 #include "drivers/simulator/board_picture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <opencv2/aruco/charuco.hpp>
@@ -22,24 +20,13 @@ constexpr float kTable = 60.0F;
 constexpr int kMarginSquares = 1;
 constexpr int kMarkerBorderModules = 1;
 
-/// In the order of OpenCV's enumeration, whose names only differ in case.
-constexpr std::array<std::string_view, 21> kDictionaries{
-    "DICT_4X4_50",         "DICT_4X4_100",       "DICT_4X4_250",       "DICT_4X4_1000",
-    "DICT_5X5_50",         "DICT_5X5_100",       "DICT_5X5_250",       "DICT_5X5_1000",
-    "DICT_6X6_50",         "DICT_6X6_100",       "DICT_6X6_250",       "DICT_6X6_1000",
-    "DICT_7X7_50",         "DICT_7X7_100",       "DICT_7X7_250",       "DICT_7X7_1000",
-    "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16H5", "DICT_APRILTAG_25H9", "DICT_APRILTAG_36H10",
-    "DICT_APRILTAG_36H11"};
-static_assert(kDictionaries.size() == cv::aruco::DICT_APRILTAG_36h11 + 1);
-
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const Board& board) {
-  const auto* const found = std::ranges::find(kDictionaries, board.dictionary);
-  if (found == kDictionaries.end()) {
+  const auto index = dictionary_index(board.dictionary);
+  if (!index) {
     throw UsageError(fmt::format("board: '{}' is none of ArUco's dictionaries; use DICT_4X4_50",
                                  board.dictionary));
   }
-  return cv::aruco::getPredefinedDictionary(
-      static_cast<int>(std::distance(kDictionaries.begin(), found)));
+  return cv::aruco::getPredefinedDictionary(*index);
 }
 
 int modules_of(const Board& board) {
@@ -119,10 +106,9 @@ void BoardPicture::paint_squares(const Board& board, int cells_a_square) {
 
 void BoardPicture::paint_markers(const Board& board) {
   const cv::Ptr<cv::aruco::Dictionary> dictionary = dictionary_of(board);
-  const int needed = square_columns(board) * square_rows(board) / 2;
-  if (needed > dictionary->bytesList.rows) {
+  if (board.markers() > dictionary->bytesList.rows) {
     throw UsageError(fmt::format("board '{}': needs {} markers, {} has {}; use a larger dictionary",
-                                 to_string(board), needed, board.dictionary,
+                                 to_string(board), board.markers(), board.dictionary,
                                  dictionary->bytesList.rows));
   }
   const int bits = dictionary->markerSize;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -93,9 +94,24 @@ TEST_P(EveryBoard, LeavesNothingOfTheImageBefore) {
   EXPECT_TRUE(corners.empty());
 }
 
+TEST_P(EveryBoard, IsNotFoundInAnImageTooSmallForIt) {
+  for (const cv::Size size :
+       {cv::Size(1, 1), cv::Size(8, 8), cv::Size(1, 480), cv::Size(2000, 1)}) {
+    SCOPED_TRACE(testing::Message() << size);
+    cv::Mat grey(size, CV_8UC1);
+    cv::RNG(1).fill(grey, cv::RNG::UNIFORM, 0, 256);
+    for (const bool thorough : {false, true}) {
+      const auto detector = make_board_detector(GetParam(), {.thorough = thorough});
+      EXPECT_TRUE(detect(*detector, grey).empty());
+      EXPECT_TRUE(detect(*detector, grey).empty());
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Boards, EveryBoard,
                          testing::Values(test::chessboard(9, 6, 6), test::chessboard(4, 7, 7),
-                                         test::charuco(8, 5, 7, 5), test::charuco(5, 6, 8, 6)),
+                                         test::charuco(8, 5, 7, 5), test::charuco(5, 6, 8, 6),
+                                         test::charuco(3, 3, 14, 10)),
                          [](const auto& board) {
                            std::string name = to_string(board.param);
                            std::ranges::replace_if(
@@ -122,6 +138,32 @@ TEST_P(EveryBoard, IsFoundInAnEndoscopesLight) {
   const cv::Mat grey = lit_from_the_middle(images.image(eye_from_board));
   const auto detector = make_board_detector(GetParam());
   expect_all(detect(*detector, grey), images.true_pixels(eye_from_board), 0.3);
+}
+
+TEST(Charuco, NamesTheDictionariesAsOpenCvNumbersThem) {
+  for (std::size_t i = 0; i < kMarkerDictionaries.size(); ++i) {
+    const MarkerDictionary& named = kMarkerDictionaries[i];
+    const auto dictionary = cv::aruco::getPredefinedDictionary(static_cast<int>(i));
+    EXPECT_EQ(dictionary->bytesList.rows, named.markers) << named.name;
+    const std::string side = std::to_string(dictionary->markerSize);
+    if (named.name.find('X') != std::string_view::npos && named.name.find("APRIL") != 5) {
+      EXPECT_EQ(named.name.substr(5, 3), side + 'X' + side);
+    }
+  }
+  const auto index = [](std::string_view name) { return dictionary_index(name).value(); };
+  EXPECT_EQ(index("DICT_4X4_50"), cv::aruco::DICT_4X4_50);
+  EXPECT_EQ(index("DICT_ARUCO_ORIGINAL"), cv::aruco::DICT_ARUCO_ORIGINAL);
+  EXPECT_EQ(index("DICT_APRILTAG_16H5"), cv::aruco::DICT_APRILTAG_16h5);
+  EXPECT_EQ(index("DICT_APRILTAG_36H11"), cv::aruco::DICT_APRILTAG_36h11);
+  EXPECT_FALSE(dictionary_index("DICT_4X4"));
+}
+
+TEST(Charuco, OfEveryDictionaryIsDetected) {
+  for (const MarkerDictionary& dictionary : kMarkerDictionaries) {
+    Board board = test::charuco(7, 8, 7, 5);
+    board.dictionary = dictionary.name;
+    EXPECT_TRUE(detect(*make_board_detector(board), tissue()).empty()) << dictionary.name;
+  }
 }
 
 TEST(Chessboard, IsFoundWhollyOrNotAtAll) {
@@ -162,6 +204,21 @@ TEST(AmbiguousChessboard, KeepsItsOrderWhileTheCameraRollsOver) {
     const Pose eye_from_board = board_in_view(board, 80, {0.2, 0.1, roll});
     expect_all(detect(*detector, images.image(eye_from_board)), images.true_pixels(eye_from_board),
                0.1);
+  }
+}
+
+TEST(AmbiguousChessboard, MayBeTheSmallestThereIs) {
+  const Board board = test::chessboard(3, 3, 10);
+  BoardImages images(board, test::endoscope());
+  const auto detector = make_board_detector(board);
+  const Pose eye_from_board = board_in_view(board, 80, {0.2, 0.1, 0.3});
+  expect_all(detect(*detector, images.image(eye_from_board)), images.true_pixels(eye_from_board),
+             0.1);
+  const auto thorough = make_board_detector(board, {.thorough = true});
+  for (const int side : {1, 8}) {
+    const cv::Mat grey = cv::Mat::zeros(side, side, CV_8UC1);
+    EXPECT_TRUE(detect(*detector, grey).empty()) << side;
+    EXPECT_TRUE(detect(*thorough, grey).empty()) << side;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/pattern/board_pose.hpp"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -101,6 +102,18 @@ TEST(BoardPose, IsNothingForWhatDeterminesNone) {
   std::vector<BoardCorner> shuffled = corners;
   for (BoardCorner& corner : shuffled) corner.id = (corner.id * 7) % 54;
   EXPECT_FALSE(with(shuffled)) << "not this board";
+}
+
+TEST(BoardPose, IsNoneForCornersThatAreNonsense) {
+  const Board board = test::chessboard(9, 6, 6);
+  const auto corners_mm = board.corners_mm();
+  const auto good = corners_at(board, test::board_in_view(board, 80, {0.4, 0.2, 0.1}), 0);
+  EXPECT_FALSE(board_pose(corners_mm, {8, good.front()}, kCamera)) << "one corner eight times";
+  for (const double value : {std::nan(""), HUGE_VAL, 0.0, 1e30}) {
+    auto corners = good;
+    for (BoardCorner& corner : corners) corner.pixel.setConstant(value);
+    EXPECT_FALSE(board_pose(corners_mm, corners, kCamera)) << value;
+  }
 }
 
 }  // namespace

@@ -92,6 +92,28 @@ TEST(ReadRequest, RejectsAnEyeWithoutItsBoard) {
   EXPECT_THAT(problem_with(message), HasSubstr("eye 2"));
 }
 
+TEST(ReadRequest, RejectsABoardThatCannotBeFound) {
+  request_t message = good_request();
+  message.eye = request_t::EYE_PATTERN;
+  message.board = "chessboard:2x6:5";
+  EXPECT_THAT(problem_with(message), HasSubstr("3 to 100 inner corners"));
+  message.board = "charuco:20x20:5:3:DICT_4X4_50";
+  EXPECT_THAT(problem_with(message), HasSubstr("has 50"));
+}
+
+TEST(ReadRequest, ReadsEyeAndBoardOfAStartOnly) {
+  for (const std::int32_t action :
+       {request_t::FINISH, request_t::CANCEL, request_t::DESCRIBE, request_t::RECORD}) {
+    request_t message = good_request(action);
+    message.eye = 77;
+    message.board = "tablecloth";
+    std::string problem;
+    const auto request = read_request(message, problem);
+    ASSERT_TRUE(request) << action << problem;
+    EXPECT_FALSE(request->board);
+  }
+}
+
 TEST(WriteSession, TellsStateRequestAndAcknowledgements) {
   Session session(SessionDefaults{});
   status_t status{};

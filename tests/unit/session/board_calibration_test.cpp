@@ -228,5 +228,42 @@ TEST(BoardStage, HandsOnTheCornersOfEveryImage) {
   EXPECT_TRUE(tracked.observations.empty());
 }
 
+TEST(BoardStage, FindsNothingInAnImageThatOpenCvThrowsAt) {
+  Frame frame;
+  frame.timestamp_ns = 5;
+  for (const cv::Mat& grey : {cv::Mat(), cv::Mat(cv::Mat::zeros(48, 64, CV_32FC1))}) {
+    BoardStage stage(test::charuco(8, 5, 7, 5));
+    frame.grey = grey;
+    TrackedFrame tracked;
+    tracked.observations.resize(3);
+    stage.process(frame, tracked);
+    EXPECT_TRUE(tracked.observations.empty());
+    EXPECT_EQ(tracked.timestamp_ns, 5);
+    EXPECT_EQ(stage.failures(), 1);
+    EXPECT_FALSE(stage.failure().empty());
+  }
+}
+
+TEST(BoardStage, GoesOnAfterADetectorThatThrows) {
+  struct Throwing final : BoardDetector {
+    int images{0};
+    void detect(const cv::Mat& /*grey*/, std::vector<BoardCorner>& corners) override {
+      corners.assign(1, {0, {1, 2}});
+      if (++images == 2) CV_Error(cv::Error::StsBadArg, "too small");
+    }
+  };
+  BoardStage stage(std::make_unique<Throwing>());
+  TrackedFrame tracked;
+  std::vector<std::size_t> corners;
+  for (std::int64_t i = 0; i < 3; ++i) {
+    stage.process(Frame{}, tracked);
+    EXPECT_EQ(tracked.index, i);
+    corners.push_back(tracked.observations.size());
+  }
+  EXPECT_THAT(corners, testing::ElementsAre(1, 0, 1));
+  EXPECT_EQ(stage.failures(), 1);
+  EXPECT_EQ(stage.failure(), "too small");
+}
+
 }  // namespace
 }  // namespace handeye

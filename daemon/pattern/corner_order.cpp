@@ -12,6 +12,8 @@ namespace {
 constexpr double kFaintestContrast = 8;
 // A turn since the last image up to this share of what would be ambiguous is believed.
 constexpr double kBelievedTurn = 2.0 / 3.0;
+// A second of a slow camera's images: what was seen before them says nothing any more.
+constexpr int kForgetAfter = 25;
 
 double angle_between(const cv::Point2f& a, const cv::Point2f& b) {
   return std::abs(std::atan2(a.cross(b), a.dot(b)));
@@ -42,7 +44,11 @@ bool CornerOrder::arrange(const cv::Mat& grey, std::vector<cv::Point2f>& corners
   corners = *std::ranges::min_element(candidates, {}, turn);
   const double half_step = std::numbers::pi / static_cast<double>(candidates.size());
   const bool ambiguous = candidates.size() > 1;
-  if (ambiguous && last_direction_ && turn(corners) > kBelievedTurn * half_step) return false;
+  if (ambiguous && last_direction_ && turn(corners) > kBelievedTurn * half_step) {
+    if (++refused_ >= kForgetAfter) last_direction_.reset();
+    return false;
+  }
+  refused_ = 0;
   last_direction_ = first_row_direction(corners);
   return true;
 }

@@ -14,7 +14,8 @@ namespace handeye {
 ///
 /// A board with one odd and one even count of corners has one such numbering. Others have two
 /// (square ones with even counts four); they are told apart by the direction of the first row
-/// against the image before, as long as it cannot be mistaken.
+/// against the image before, as long as it cannot be mistaken. After a second of images in which it
+/// could be, that direction is forgotten, and the numbering may be another from then on.
 class CornerOrder {
  public:
   CornerOrder(int columns, int rows) : columns_(columns), rows_(rows) {}
@@ -37,6 +38,7 @@ class CornerOrder {
   int columns_;
   int rows_;
   std::optional<cv::Point2f> last_direction_;  ///< of the first row, in the image before
+  int refused_{0};                             ///< images in a row, for too large a turn
 };
 
 }  // namespace handeye

@@ -5,8 +5,17 @@
 
 namespace handeye {
 
+namespace {
+
+constexpr std::size_t kExpectedFrames = 4096;  // more than a minute at 60 Hz
+
+}  // namespace
+
 BoardEye::BoardEye(const Board& board, const CameraModel& camera)
-    : corners_mm_(board.corners_mm()), camera_(camera) {}
+    : corners_mm_(board.corners_mm()), camera_(camera) {
+  corners_.reserve(corners_mm_.size());
+  frames_.reserve(kExpectedFrames);
+}
 
 ReconstructionState BoardEye::add(const TrackedFrame& frame) {
   corners_.clear();

@@ -66,6 +66,30 @@ TEST(CornerOrder, OfASquareBoardIsOneOfItsOwn) {
   }
 }
 
+TEST(CornerOrder, ForgetsAnAmbiguousBoardThatIsRefusedForASecond) {
+  const auto rolled = [](double roll) {
+    const Board board = test::chessboard(8, 6, 6);
+    test::BoardImages images(board, {640, 480, 520, 520, 320, 240, {}});
+    const Pose eye_from_board = test::board_in_view(board, 80, {0, 0, roll});
+    View view{images.image(eye_from_board), {}};
+    for (const Eigen::Vector2d& pixel : images.true_pixels(eye_from_board)) {
+      view.corners.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    }
+    return view;
+  };
+  CornerOrder order(8, 6);
+  View before = rolled(0);
+  ASSERT_TRUE(order.arrange(before.grey, before.corners));
+  const View turned = rolled(1.5);
+  for (int image = 0; image < 25; ++image) {
+    auto corners = turned.corners;
+    EXPECT_FALSE(order.arrange(turned.grey, corners)) << image;
+  }
+  auto corners = turned.corners;
+  EXPECT_TRUE(order.arrange(turned.grey, corners));
+  EXPECT_TRUE(order.arrange(turned.grey, corners)) << "and is followed from then on";
+}
+
 TEST(CornerOrder, RefusesWhatDoesNotAlternate) {
   View seen = view(9, 6);
   EXPECT_FALSE(CornerOrder(9, 6).arrange(cv::Mat::ones(480, 640, CV_8UC1), seen.corners));

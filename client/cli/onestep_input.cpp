@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "client/cli/json_file.hpp"
 #include "daemon/handeye/perspective/gibbs.hpp"
 #include "protocol/exit_codes.hpp"
 
@@ -26,10 +27,21 @@ struct Place {
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name + ": " + what); }
 
-  bool has(const char* key) const { return json.is_object() && json.contains(key); }
+  /// There, and not null.
+  bool has(const char* key) const {
+    return json.is_object() && json.contains(key) && !json.at(key).is_null();
+  }
+
+  /// The object of that name; nothing when it is not there or null.
+  std::optional<Place> object(const char* key) const {
+    if (!has(key)) return std::nullopt;
+    const Place place = at(key);
+    if (!place.json.is_object()) place.fail("an object is wanted");
+    return place;
+  }
 
   Place at(const char* key) const {
-    if (!has(key)) fail(fmt::format("'{}' is missing", key));
+    if (!json.is_object() || !json.contains(key)) fail(fmt::format("'{}' is missing", key));
     return {json.at(key), fmt::format("{}: {}", name, key)};
   }
 
@@ -65,16 +77,6 @@ struct Place {
   }
 };
 
-Json read_json(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError("cannot read " + file.string() + ": is it there and readable?");
-  Json json = Json::parse(stream, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) {
-    throw InputError(file.string() + " is not a JSON object (NaN and Infinity are no JSON)");
-  }
-  return json;
-}
-
 Eigen::Quaterniond read_quaternion(const Place& place) {
   const Eigen::Vector4d q = place.numbers<4>();
   if (std::abs(q.norm() - 1.0) > kUnitLength) place.fail("a quaternion of length 1 is wanted");
@@ -100,8 +102,7 @@ ObservedPosition read_position(const Place& place) {
 /// Rotation given as Gibbs vector, quaternion, or both where they agree.
 Pose read_starting_pose(const Place& place) {
   const Eigen::Vector3d t_mm = place.at("t_mm").numbers<3>();
-  const bool has_gibbs = place.has("gibbs") && !place.at("gibbs").json.is_null();
-  if (!has_gibbs) return make_pose(read_quaternion(place.at("q_wxyz")), t_mm);
+  if (!place.has("gibbs")) return make_pose(read_quaternion(place.at("q_wxyz")), t_mm);
   const Eigen::Quaterniond rotation = rotation_from_gibbs(place.at("gibbs").numbers<3>());
   constexpr double kSame_rad = 1e-6;
   if (place.has("q_wxyz") &&
@@ -125,7 +126,7 @@ PerspectiveMatrix read_matrix(const Place& place, const Eigen::Vector3d& in_fron
 }  // namespace
 
 Observations read_observations(const std::filesystem::path& file) {
-  const Json json = read_json(file);
+  const Json json = read_json_object(file, "a file of observations");
   const Place root{json, file.string()};
   Observations observations;
   observations.width = root.at("width").positive_integer(kLargestImage_px);
@@ -148,17 +149,16 @@ Observations read_observations(const std::filesystem::path& file) {
 }
 
 PerspectiveStart read_start(const std::filesystem::path& file, const Observations& observations) {
-  const Json json = read_json(file);
+  const Json json = read_json_object(file, "a start, such as an earlier result,");
   const Place root{json, file.string()};
   PerspectiveStart start;
-  if (root.has("object_from_hand")) {
-    start.object_from_hand = read_starting_pose(root.at("object_from_hand"));
+  if (const auto pose = root.object("object_from_hand")) {
+    start.object_from_hand = read_starting_pose(*pose);
   }
-  if (root.has("camera")) {
-    const Place camera = root.at("camera");
-    if (camera.has("k1_per_mm2")) start.k1_per_mm2 = camera.at("k1_per_mm2").number();
-    if (camera.has("cx") || camera.has("cy")) {
-      start.centre_px = Eigen::Vector2d(camera.at("cx").number(), camera.at("cy").number());
+  if (const auto camera = root.object("camera")) {
+    if (camera->has("k1_per_mm2")) start.k1_per_mm2 = camera->at("k1_per_mm2").number();
+    if (camera->has("cx") || camera->has("cy")) {
+      start.centre_px = Eigen::Vector2d(camera->at("cx").number(), camera->at("cy").number());
     }
   }
   if (root.has("perspective_matrices")) {
@@ -172,6 +172,15 @@ PerspectiveStart read_start(const std::filesystem::path& file, const Observation
       if (points.empty()) break;
       start.matrices.push_back(read_matrix(matrices.at(i), points.front().object_mm));
     }
+  }
+  if (!start.object_from_hand && !start.centre_px && !start.k1_per_mm2 && start.matrices.empty()) {
+    root.fail(
+        "no start: object_from_hand, camera (cx and cy, k1_per_mm2) or perspective_matrices is "
+        "wanted");
+  }
+  const bool camera_alone = (start.centre_px || start.k1_per_mm2) && start.matrices.empty();
+  if (camera_alone && observations.planar()) {
+    root.fail("the object is a plane, for which a camera needs perspective_matrices beside it");
   }
   return start;
 }

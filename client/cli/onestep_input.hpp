@@ -12,8 +12,8 @@ namespace handeye::cli {
 Observations read_observations(const std::filesystem::path& file);
 
 /// Reads a start: object_from_hand {t_mm, and gibbs or q_wxyz}, camera {cx, cy, k1_per_mm2},
-/// perspective_matrices (one a position, 3 x 4); each may be left out. A result of onestep is one.
-/// Throws InputError likewise.
+/// perspective_matrices (one a position, 3 x 4); each may be left out or null, but not all. A
+/// result of onestep is one. Throws InputError likewise.
 PerspectiveStart read_start(const std::filesystem::path& file, const Observations& observations);
 
 }  // namespace handeye::cli

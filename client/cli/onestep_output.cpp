@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "client/cli/onestep_output.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "client/cli/result_parts.hpp"
@@ -45,6 +47,36 @@ Json matrices_json(const std::vector<PerspectiveMatrix>& matrices) {
   return list;
 }
 
+/// Position and point, counted from 1 as people count, of a place among all points.
+std::pair<std::size_t, std::size_t> position_and_point(std::size_t place,
+                                                       const Observations& observations) {
+  std::size_t position = 0;
+  while (place >= observations.positions[position].points.size()) {
+    place -= observations.positions[position++].points.size();
+  }
+  return {position + 1, place + 1};
+}
+
+Json left_out_json(const PerspectiveCalibration& calibration, const Observations& observations) {
+  Json list = Json::array();
+  for (const std::size_t place : calibration.left_out) {
+    const auto [position, point] = position_and_point(place, observations);
+    list.push_back({position, point});
+  }
+  return list;
+}
+
+/// "2:17, 3:4": position and point.
+std::string left_out_text(const PerspectiveCalibration& calibration,
+                          const Observations& observations) {
+  std::string text;
+  for (const std::size_t place : calibration.left_out) {
+    const auto [position, point] = position_and_point(place, observations);
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ", ", position, point);
+  }
+  return text;
+}
+
 std::string pose_rows(const std::string& name, const Pose& pose, double sigma_deg,
                       double sigma_mm) {
   Eigen::Quaterniond q(pose.linear());
@@ -76,6 +108,7 @@ Json onestep_json(const PerspectiveCalibration& calibration, const Observations&
       {"camera", camera},
       {"iterations", calibration.iterations},
       {"reprojection_px", refined.reprojection_px},
+      {"left_out", left_out_json(calibration, observations)},
       {"sigma",
        {{"object_from_hand", deviation_json(sigma.object_from_hand_deg, sigma.object_from_hand_mm)},
         {"hand_from_eye", deviation_json(sigma.hand_from_eye_deg, sigma.hand_from_eye_mm)},
@@ -96,7 +129,7 @@ Json onestep_json(const PerspectiveCalibration& calibration, const Observations&
 Json onestep_json(const PerspectiveRefusal& refusal) {
   Json json{{"verdict", "refused"}, {"reason", refusal.reason}, {"advice", refusal.advice}};
   for (const char* field : {"object_from_hand", "hand_from_eye", "camera", "iterations",
-                            "reprojection_px", "sigma", "noise", "matrix_method"}) {
+                            "reprojection_px", "left_out", "sigma", "noise", "matrix_method"}) {
     json[field] = nullptr;
   }
   return json;
@@ -122,6 +155,10 @@ std::string onestep_text(const PerspectiveCalibration& calibration,
   text += row(
       "k1", fmt::format("{:.6g} per mm^2   +- {:.3g}", camera.k1_per_mm2, sigma.camera.k1_per_mm2));
   text += row("reprojection", fmt::format("{:.3g} px rms", refined.reprojection_px));
+  if (!calibration.left_out.empty()) {
+    text += row("left out", palette.yellow(left_out_text(calibration, observations)) +
+                                "  (position:point, gross errors in the image)");
+  }
   if (refined.hand_noise.translation_mm > 0) {
     text += row("hand noise", fmt::format("{:.3g} deg {:.3g} mm per axis, estimated",
                                           deg_from_rad(refined.hand_noise.rotation_rad),

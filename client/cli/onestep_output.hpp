@@ -10,7 +10,7 @@
 
 namespace handeye::cli {
 
-/// The result of `handeye onestep` (docs/onestep.md). The seed's k1 is named k1_per_mm2 and never
+/// The result of `handeye onestep` (docs/onestep.md). Chung's k1 is named k1_per_mm2 and never
 /// stands under `distortion`, which is OpenCV's.
 nlohmann::ordered_json onestep_json(const PerspectiveCalibration& calibration,
                                     const Observations& observations);

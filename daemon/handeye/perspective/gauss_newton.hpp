@@ -9,7 +9,7 @@
 #include "daemon/handeye/perspective/matrix_method.hpp"
 #include "daemon/handeye/perspective/observations.hpp"
 
-/// The seed's new method (Chung): the lens distortion inside the perspective matrices. Unknown are
+/// Chung's new method: the lens distortion inside the perspective matrices. Unknown are
 /// k1, the image centre, every M_i, and Y = object_from_hand1, all found by one undamped
 /// Gauss-Newton iteration.
 namespace handeye {
@@ -32,8 +32,10 @@ std::optional<std::vector<PerspectiveMatrix>> matrices_by_dlt(const Observations
 
 /// One undamped Gauss-Newton step: lens and matrices from
 ///   x_u(pixel; k1, centre) = M_i P   [mm on the undistorted sensor]
-/// with the principal point of every M_i at the image centre and its third row of norm 1; then the
-/// Gibbs vector and p of Y from M_i Y A_i = M_1 Y. Nothing when a part of it is not determined.
+/// and, for each M_i, three soft equations of weight 1 beside those of its images: its third row
+/// shall be of norm 1 and its first two normal to it (principal point at the image centre). They
+/// are no constraint: where the images contradict them, they hold only nearly. Then the Gibbs
+/// vector and p of Y from M_i Y A_i = M_1 Y. Nothing when a part of it is not determined.
 std::optional<PerspectiveState> gauss_newton_step(const Observations& observations,
                                                   const PerspectiveState& state);
 

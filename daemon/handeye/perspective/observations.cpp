@@ -47,6 +47,13 @@ bool spans_plane(const std::vector<Eigen::Vector3d>& points) {
   return s(1) > kThin * s(0);
 }
 
+constexpr double kLargest = 1e9;  // mm or px; beyond it nothing is observed
+
+template <typename Vector>
+bool sensible(const Vector& numbers) {
+  return numbers.allFinite() && numbers.cwiseAbs().maxCoeff() <= kLargest;
+}
+
 /// The first position whose numbers cannot be used.
 std::optional<PerspectiveRefusal> unusable_numbers(const Observations& observations) {
   for (std::size_t i = 0; i < observations.positions.size(); ++i) {
@@ -55,14 +62,15 @@ std::optional<PerspectiveRefusal> unusable_numbers(const Observations& observati
     constexpr double kRigid = 1e-6;
     bool usable = position.hand1_from_hand.matrix().allFinite() &&
                   (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() < kRigid &&
-                  r.determinant() > 0.0;
+                  r.determinant() > 0.0 && sensible(position.hand1_from_hand.translation());
     for (const ObjectPoint& point : position.points) {
-      usable = usable && point.object_mm.allFinite() && point.pixel.allFinite();
+      usable = usable && sensible(point.object_mm) && sensible(point.pixel);
     }
     if (!usable) {
       return PerspectiveRefusal{
           "unusable_numbers",
-          fmt::format("position {} holds numbers that are not finite or no rotation", i + 1)};
+          fmt::format("position {} holds numbers that are not finite, beyond {:g}, or no rotation",
+                      i + 1, kLargest)};
     }
   }
   return std::nullopt;

@@ -43,8 +43,8 @@ struct PerspectiveRefusal {
   std::string advice;  ///< one line: what is wrong and what to do
 };
 
-/// What the data lack before any solving: positions, usable numbers (finite, rotations), points, or
-/// rotation of the hand. Nothing: nothing is lacking.
+/// What the data lack before any solving: positions, usable numbers (finite, up to 1e9, rotations),
+/// points, or rotation of the hand. Nothing: nothing is lacking.
 std::optional<PerspectiveRefusal> lacking(const Observations& observations);
 
 }  // namespace handeye

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/perspective/one_step.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "daemon/handeye/perspective/gauss_newton.hpp"
+#include "daemon/handeye/perspective/outliers.hpp"
 #include "daemon/handeye/perspective/planar_start.hpp"
 
 namespace handeye {
@@ -29,7 +32,7 @@ SensorLens starting_lens(const Observations& observations, const PerspectiveOpti
 std::optional<PerspectiveState> starting_state(const Observations& observations,
                                                const PerspectiveOptions& options, bool planar) {
   PerspectiveState state;
-  if (planar) {
+  if (planar && options.start.matrices.empty()) {
     const auto zhang = planar_start(observations, options.distortion_inside);
     if (!zhang) return std::nullopt;
     state = *zhang;
@@ -130,6 +133,26 @@ double hand_movement_mm(const Observations& observations) {
   return std::sqrt(sum / static_cast<double>(observations.positions.size()));
 }
 
+/// What a translation must be known to: the object's distance from the camera, or less where hand
+/// and camera have moved less.
+double known_length_mm(const Observations& observations, const RefinedCalibration& calibration) {
+  const Pose& hand_from_eye = calibration.hand_from_eye;
+  const Pose eye1_from_object = (calibration.object_from_hand * hand_from_eye).inverse();
+  double distance_mm = 0.0;
+  for (const ObjectPoint& point : observations.positions.front().points) {
+    distance_mm += (eye1_from_object * point.object_mm).norm();
+  }
+  distance_mm /= static_cast<double>(observations.positions.front().points.size());
+  double eye_squares = 0.0;
+  for (const ObservedPosition& position : observations.positions) {
+    const Pose eye1_from_eye = hand_from_eye.inverse() * position.hand1_from_hand * hand_from_eye;
+    eye_squares += eye1_from_eye.translation().squaredNorm();
+  }
+  const double eye_movement_mm =
+      std::sqrt(eye_squares / static_cast<double>(observations.positions.size()));
+  return std::min(distance_mm, std::max(hand_movement_mm(observations), eye_movement_mm));
+}
+
 std::optional<PerspectiveRefusal> doubtful(const Observations& observations,
                                            const Refinement& refinement) {
   const HandNoise& noise = refinement.calibration.hand_noise;
@@ -140,17 +163,23 @@ std::optional<PerspectiveRefusal> doubtful(const Observations& observations,
                               "(not its inverse), in mm, in the order of the images?"};
   }
   const PerspectiveSigma& sigma = refinement.sigma;
-  const bool known = sigma.hand_from_eye_deg < kUnknown_deg &&
+  const double limit_mm = known_length_mm(observations, refinement.calibration);
+  const bool known = sigma.hand_from_eye_mm < limit_mm && sigma.object_from_hand_mm < limit_mm &&
+                     sigma.hand_from_eye_deg < kUnknown_deg &&
                      sigma.object_from_hand_deg < kUnknown_deg &&
                      sigma.camera.fx < refinement.calibration.camera.fx;
   if (!known) return not_determined();
   return std::nullopt;
 }
 
-}  // namespace
+/// An answer to all the points, good or bad, and their errors.
+struct Attempt {
+  PerspectiveCalibration calibration;
+  std::vector<double> errors_px;
+};
 
-std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
-    const Observations& given, const PerspectiveOptions& options) {
+std::variant<Attempt, PerspectiveRefusal> attempt(const Observations& given,
+                                                  const PerspectiveOptions& options) {
   Observations observations = given;
   if (auto refusal = lacking(observations)) return *refusal;
   const bool planar = observations.planar();
@@ -174,6 +203,12 @@ std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
                               "no camera makes these images: do u and v run right and down, and is "
                               "the object's frame right-handed?"};
   }
+  if (!can_begin(observations, *parts, options.distortion_inside)) {
+    return PerspectiveRefusal{
+        "inconsistent",
+        "points would lie behind the camera or off its lens: are object and "
+        "hand both in mm, hand1_from_hand not its inverse, and no points mixed up?"};
+  }
   auto refinement = refine(observations, *parts, options.distortion_inside);
   if (!refinement) return not_determined();
   if (options.distortion_inside) {
@@ -183,7 +218,41 @@ std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
   calibration.refined = refinement->calibration;
   calibration.sigma = refinement->sigma;
   calibration.pixel_mm = observations.pixel_mm;
-  return calibration;
+  return Attempt{std::move(calibration), std::move(refinement->errors_px)};
+}
+
+/// Leaves out the points at places among those of `rest`; `left_out` and `places` count among all
+/// the points there ever were, `places` of those that are left.
+void leave_out(const std::vector<std::size_t>& gross, Observations& rest,
+               std::vector<std::size_t>& places, std::vector<std::size_t>& left_out) {
+  rest = without_points(rest, gross);
+  for (auto place = gross.rbegin(); place != gross.rend(); ++place) {
+    const auto at = places.begin() + static_cast<std::ptrdiff_t>(*place);
+    left_out.push_back(*at);
+    places.erase(at);
+  }
+  std::ranges::sort(left_out);
+}
+
+}  // namespace
+
+std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
+    const Observations& observations, const PerspectiveOptions& options) {
+  Observations rest = observations;
+  std::vector<std::size_t> places(observations.point_count());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::vector<std::size_t> left_out;
+  while (true) {
+    auto found = attempt(rest, options);
+    if (auto* refusal = std::get_if<PerspectiveRefusal>(&found)) return std::move(*refusal);
+    auto& [calibration, errors_px] = std::get<Attempt>(found);
+    const std::vector<std::size_t> gross = gross_outliers(rest, errors_px);
+    if (gross.empty()) {
+      calibration.left_out = std::move(left_out);
+      return std::move(calibration);
+    }
+    leave_out(gross, rest, places, left_out);
+  }
 }
 
 }  // namespace handeye

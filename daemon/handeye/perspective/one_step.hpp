@@ -14,7 +14,8 @@
 /// Not to be mixed up with the method `one_step`, which needs no pattern.
 namespace handeye {
 
-/// Where the iteration begins; what is left out is found from the observations.
+/// Where the iteration begins; what is left out is found from the observations. For a plane, centre
+/// and k1 are taken together with the matrices only.
 struct PerspectiveStart {
   std::optional<Pose> object_from_hand;  ///< Y, mm
   std::optional<Eigen::Vector2d> centre_px;
@@ -34,10 +35,12 @@ struct PerspectiveCalibration {
   PerspectiveSigma sigma;
   int iterations{0};                            ///< Gauss-Newton steps of the matrix method
   std::optional<Pose> matrix_object_from_hand;  ///< Y of the matrix method, before refinement
+  std::vector<std::size_t> left_out;            ///< gross outliers: places among all the points
   std::vector<PerspectiveMatrix> matrices;      ///< M_i of the matrix method
 };
 
-/// Gauss-Newton on the matrices (a plane: from Zhang's), X from M_1 Y = K X, then refinement.
+/// Gauss-Newton on the matrices (a plane: from Zhang's), X from M_1 Y = K X, then refinement; all
+/// of it again without the points that come out as gross outliers, until there are none.
 std::variant<PerspectiveCalibration, PerspectiveRefusal> calibrate_perspective(
     const Observations& observations, const PerspectiveOptions& options);
 

@@ -2,6 +2,8 @@
 #include "daemon/handeye/perspective/projection_problem.hpp"
 
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
@@ -22,6 +24,14 @@ double value_of(double x) {
 template <typename T, int n>
 double value_of(const ceres::Jet<T, n>& x) {
   return x.a;
+}
+
+bool is_finite(double x) {
+  return std::isfinite(x);
+}
+template <typename T, int n>
+bool is_finite(const ceres::Jet<T, n>& x) {
+  return std::isfinite(x.a) && x.v.allFinite();
 }
 
 /// distorted_radius with its derivatives: one step of Newton's method from the exact value. False
@@ -75,7 +85,8 @@ struct ProjectionError {
     }
     residual[0] = (ratio * x_mm / pixel_mm.x() + camera[2] - point.pixel.x()) / image_noise_px;
     residual[1] = (ratio * y_mm / pixel_mm.y() + camera[3] - point.pixel.y()) / image_noise_px;
-    return true;
+    // Ceres would complain on stderr where a residual is not finite; so it is told.
+    return is_finite(residual[0]) && is_finite(residual[1]);
   }
 };
 
@@ -150,6 +161,7 @@ std::array<double*, 4> ProjectionProblem::pose_blocks() {
 }
 
 bool ProjectionProblem::solve(Hands hands, double image_noise_px, const HandNoise& hand_noise) {
+  if (!errors_px()) return false;
   Weighted weighted(*this, hands, image_noise_px, hand_noise);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -172,11 +184,30 @@ RefinedCalibration ProjectionProblem::calibration() const {
   return calibration;
 }
 
-double ProjectionProblem::sum_of_squares_px2() {
-  Weighted weighted(*this, Hands::kExact, 1.0, {});
-  double cost = 0;
-  weighted.problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return 2.0 * cost;
+std::optional<std::vector<double>> ProjectionProblem::errors_px() const {
+  std::vector<double> errors;
+  errors.reserve(observations_.point_count());
+  for (std::size_t i = 0; i < deviations_.size(); ++i) {
+    const ObservedPosition& position = observations_.positions[i];
+    const Pose hand_from_hand1 = position.hand1_from_hand.inverse();
+    for (const ObjectPoint& point : position.points) {
+      const ProjectionError error{point, hand_from_hand1, observations_.pixel_mm, 1.0};
+      Eigen::Vector2d residual;
+      if (!error(object_from_hand_q_.coeffs().data(), object_from_hand_t_.data(),
+                 hand_from_eye_q_.coeffs().data(), hand_from_eye_t_.data(), camera_.data(),
+                 deviations_[i].data(), residual.data())) {
+        return std::nullopt;
+      }
+      errors.push_back(residual.norm());
+    }
+  }
+  return errors;
+}
+
+double ProjectionProblem::sum_of_squares_px2() const {
+  const auto errors = errors_px();
+  if (!errors) return std::numeric_limits<double>::infinity();
+  return std::inner_product(errors->begin(), errors->end(), errors->begin(), 0.0);
 }
 
 Eigen::Index ProjectionProblem::image_residuals() const {
@@ -205,7 +236,9 @@ std::optional<Eigen::MatrixXd> ProjectionProblem::covariance(Hands hands, double
     for (Vector6d& deviation : deviations_) options.parameter_blocks.push_back(deviation.data());
   }
   ceres::CRSMatrix jacobian;
-  weighted.problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian);
+  if (!weighted.problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) {
+    return std::nullopt;
+  }
   const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> j(
       jacobian.num_rows, jacobian.num_cols, static_cast<Eigen::Index>(jacobian.values.size()),
       jacobian.rows.data(), jacobian.cols.data(), jacobian.values.data());

@@ -29,14 +29,18 @@ class ProjectionProblem {
   ProjectionProblem(const Observations& observations, const RefinedCalibration& start,
                     bool distortion_inside);
 
-  /// Minimises; residuals are weighted by the noise given. False: no usable solution.
+  /// Minimises; residuals are weighted by the noise given. False: no usable solution, or a point is
+  /// not seen from where it would begin.
   bool solve(Hands hands, double image_noise_px, const HandNoise& hand_noise);
 
   /// Y, hand_from_eye and camera as they stand.
   RefinedCalibration calibration() const;
 
-  /// Of the images' residuals, the hands' deviations taken into account.
-  double sum_of_squares_px2();
+  /// Lengths of the points' residuals, position by position, the hands' deviations taken into
+  /// account. Nothing where a point is not seen: behind the camera, off the lens, not finite.
+  std::optional<std::vector<double>> errors_px() const;
+  /// Of their squares; infinite where there are none.
+  double sum_of_squares_px2() const;
   Eigen::Index image_residuals() const;
   Eigen::Index positions() const { return static_cast<Eigen::Index>(deviations_.size()); }
   /// k1 included or not.

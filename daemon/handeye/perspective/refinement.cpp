@@ -76,6 +76,11 @@ PerspectiveSigma sigma_of(const Eigen::MatrixXd& covariance, bool distortion_ins
 
 }  // namespace
 
+bool can_begin(const Observations& observations, const RefinedCalibration& start,
+               bool distortion_inside) {
+  return ProjectionProblem(observations, start, distortion_inside).errors_px().has_value();
+}
+
 std::optional<Refinement> refine(const Observations& observations, const RefinedCalibration& start,
                                  bool distortion_inside) {
   ProjectionProblem problem(observations, start, distortion_inside);
@@ -101,9 +106,11 @@ std::optional<Refinement> refine(const Observations& observations, const Refined
 
   const double weight_px = std::max(image_noise_px, 1e-12);
   const auto covariance = problem.covariance(hands, weight_px, hand_noise);
-  if (!covariance) return std::nullopt;
+  auto errors_px = problem.errors_px();
+  if (!covariance || !errors_px) return std::nullopt;
   Refinement refinement{.calibration = problem.calibration(),
-                        .sigma = sigma_of(*covariance, distortion_inside)};
+                        .sigma = sigma_of(*covariance, distortion_inside),
+                        .errors_px = std::move(*errors_px)};
   refinement.calibration.reprojection_px =
       std::sqrt(problem.sum_of_squares_px2() / static_cast<double>(residuals));
   refinement.calibration.image_noise_px = image_noise_px;

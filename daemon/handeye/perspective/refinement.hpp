@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "daemon/handeye/perspective/observations.hpp"
 
@@ -40,7 +41,12 @@ struct PerspectiveSigma {
 struct Refinement {
   RefinedCalibration calibration;
   PerspectiveSigma sigma;
+  std::vector<double> errors_px;  ///< every point's distance from where it is seen, in order
 };
+
+/// Whether every point is in front of the camera and on its lens, so that refine() can begin there.
+bool can_begin(const Observations& observations, const RefinedCalibration& start,
+               bool distortion_inside);
 
 /// From a start that is near. The hand's poses are taken to be exact, unless the images contradict
 /// them by more than the image noise explains: then they are weighted with noise of their own,

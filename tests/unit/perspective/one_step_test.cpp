@@ -139,6 +139,47 @@ Eigen::Vector2d mean_square_errors(bool planar, double image_px, double hand_deg
   return sum / seeds;
 }
 
+TEST(OneStep, GrossErrorsAreFoundAndLeftOut) {
+  for (const bool planar : {false, true}) {
+    Scene clean(planar);
+    clean.with_image_noise(0.3, 1);
+    Scene spoiled = clean;
+    spoiled.observations.positions[1].points[7].pixel.x() += planar ? 30.0 : 100.0;
+    const auto found = solved(spoiled.observations);
+    EXPECT_EQ(found.left_out, std::vector<std::size_t>{36 + 7});
+    spoiled = clean;
+    spoiled.observations.positions[1].points[7].pixel.x() += 25.0;
+    spoiled.observations.positions[4].points[0].pixel.y() -= 15.0;
+    spoiled.observations.positions[4].points[35].pixel.y() += 20.0;
+    const auto three = solved(spoiled.observations);
+    EXPECT_EQ(three.left_out, (std::vector<std::size_t>{36 + 7, 4 * 36, 4 * 36 + 35}));
+    const auto expected = solved(clean.observations);
+    EXPECT_TRUE(expected.left_out.empty());
+    EXPECT_LT(
+        (three.refined.hand_from_eye.translation() - expected.refined.hand_from_eye.translation())
+            .norm(),
+        expected.sigma.hand_from_eye_mm);
+  }
+}
+
+TEST(OneStep, APlaneBeginsAtTheMatricesGiven) {
+  const Scene scene(true);
+  const PerspectiveCalibration first = solved(scene.observations);
+  PerspectiveOptions options;
+  options.start.object_from_hand = first.matrix_object_from_hand;
+  options.start.matrices = first.matrices;
+  options.start.centre_px = scene.lens.centre_px;
+  options.start.k1_per_mm2 = scene.lens.k1_per_mm2;
+  const PerspectiveCalibration again = solved(scene.observations, options);
+  EXPECT_LE(again.iterations, 2);
+  EXPECT_LT(again.refined.reprojection_px, 1e-7);
+  // A start that is used shows where it is bad.
+  for (PerspectiveMatrix& matrix : options.start.matrices) matrix.row(0) *= 1.02;
+  const PerspectiveCalibration off = solved(scene.observations, options);
+  EXPECT_GT((off.matrices.front() - first.matrices.front()).norm(), 1e-3);
+  EXPECT_LT(off.refined.reprojection_px, 1e-7);
+}
+
 TEST(OneStep, SigmasAreHonestUnderImageNoise) {
   for (const bool planar : {false, true}) {
     const Eigen::Vector2d ratio = mean_square_errors(planar, 0.3, 0.0, 0.0, 30);

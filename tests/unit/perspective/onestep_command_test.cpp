@@ -176,6 +176,31 @@ TEST_F(OnestepCommand, FilesThatAreNotThereAreExitCode2) {
   const Finished finished = run_handeye({"onestep", folder_ / "nothing.json"});
   EXPECT_EQ(finished.exit_code, 2);
   EXPECT_THAT(finished.err, HasSubstr("nothing.json"));
+  const Finished folder = run_handeye({"onestep", "."});
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_THAT(folder.err, HasSubstr(".: is a folder"));
+}
+
+TEST_F(OnestepCommand, WhatIsNullInAStartIsNotThere) {
+  const auto from = [&](const json& start) {
+    write_text(folder_ / "start.json", start.dump());
+    return run({"--json", "--start", folder_ / "start.json"});
+  };
+  const Finished some = from({{"object_from_hand", nullptr},
+                              {"camera", {{"cx", nullptr}, {"cy", nullptr}, {"k1_per_mm2", 0.0}}},
+                              {"perspective_matrices", nullptr}});
+  EXPECT_EQ(some.exit_code, 0) << some.err;
+  const std::vector<json> unusable{json::object(),
+                                   {{"object_from_hand", nullptr}, {"camera", nullptr}},
+                                   {{"verdict", "refused"}},
+                                   {{"camera", 5}},
+                                   {{"object_from_hand", {1, 2, 3}}}};
+  for (const json& start : unusable) {
+    const Finished none = from(start);
+    EXPECT_EQ(none.exit_code, 2) << start;
+    EXPECT_THAT(none.err, HasSubstr("start.json: ")) << start;
+    EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+  }
 }
 
 TEST_F(OnestepCommand, MistakesOnTheCommandLineAreExitCode1) {

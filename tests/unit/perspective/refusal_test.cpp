@@ -87,6 +87,45 @@ TEST(OneStepRefusal, NumbersThatAreNotFiniteAreRefused) {
   EXPECT_EQ(refusal(scene.observations), "unusable_numbers");
 }
 
+TEST(OneStepRefusal, NumbersThatNothingHasAreRefused) {
+  Scene scene(false);
+  scene.observations.positions[1].points[3].object_mm.x() = 1e300;
+  EXPECT_EQ(refusal(scene.observations), "unusable_numbers");
+  scene = Scene(false);
+  scene.observations.positions[2].hand1_from_hand.translation().y() = 1e10;
+  EXPECT_EQ(refusal(scene.observations), "unusable_numbers");
+}
+
+TEST(OneStepRefusal, UnitsThatDoNotMatchAreRefusedWithoutNoise) {
+  for (const double factor : {1e-3, 1e3, 1e6}) {
+    Scene scene(false);
+    for (ObservedPosition& position : scene.observations.positions) {
+      for (ObjectPoint& point : position.points) point.object_mm *= factor;
+    }
+    testing::internal::CaptureStderr();
+    EXPECT_NE(refusal(scene.with_image_noise(0.2, 1).observations), "") << factor;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << factor;
+  }
+}
+
+/// Turned so little that the noise hides where the hand's origin is.
+TEST(OneStepRefusal, ATranslationThatIsNotKnownIsRefused) {
+  for (const double turn_deg : {0.3, 0.6, 1.0}) {
+    Scene scene(false, 140.0, 1);
+    for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+      Pose eye1_from_eye = Pose::Identity();
+      eye1_from_eye.linear() = exp_so3(rad_from_deg(turn_deg) * axis);
+      scene.add_position(scene.hand_from_eye * eye1_from_eye * scene.hand_from_eye.inverse(),
+                         false);
+    }
+    const auto found = calibrate_perspective(scene.with_image_noise(1.0, 5).observations, {});
+    const auto* accepted = std::get_if<PerspectiveCalibration>(&found);
+    if (accepted == nullptr) continue;
+    EXPECT_LT(accepted->sigma.hand_from_eye_mm, 250) << turn_deg;
+    EXPECT_LT(accepted->sigma.object_from_hand_mm, 250) << turn_deg;
+  }
+}
+
 TEST(OneStepRefusal, AMirroredImageIsRefused) {
   Scene scene(false);
   for (ObservedPosition& position : scene.observations.positions) {

@@ -7,12 +7,12 @@
 #include <Eigen/Dense>
 
 #include "daemon/handeye/residual_whitening.hpp"
+#include "daemon/handeye/scene_placement.hpp"
 
 namespace handeye {
 namespace {
 
 constexpr int kMaxIterations = 100;
-constexpr int kMedianRounds = 5;
 constexpr double kSettled = 1e-15;      // relative decrease of the cost that is still expected
 constexpr double kExact = 1e-20;        // cost of a pose that is as good as none
 constexpr double kMaxDamping = 1e10;    // no step is small enough: at the limit of rounding
@@ -20,19 +20,6 @@ constexpr double kLeastDamping = 1e-9;  // what the first step that fails is rep
 
 double square(double x) {
   return x * x;
-}
-
-/// Component by component.
-Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& vectors) {
-  Eigen::Vector3d result;
-  std::vector<double> values(vectors.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < vectors.size(); ++k) values[k] = vectors[k][axis];
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    result[axis] = *middle;
-  }
-  return result;
 }
 
 }  // namespace
@@ -59,33 +46,7 @@ PoseProblem::PoseProblem(std::span<const HandEyeObservation> observations,
     pose.hand_in_room_mm -= room_centre_mm_;
     pose.eye_in_scene_mm -= scene_centre_mm_;
   }
-  place_scene();
-}
-
-/// room_from_scene from all poses: the median of what each says, for many may be wrong.
-void PoseProblem::place_scene() {
-  std::vector<Eigen::Quaterniond> rotations;
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const CentredPose& pose : poses_) {
-    rotations.push_back(pose.room_from_hand * unknowns_.hand_from_eye *
-                        pose.scene_from_eye.conjugate());
-    sum += rotations.back().toRotationMatrix();
-  }
-  Eigen::Quaterniond& rotation = unknowns_.room_from_scene;
-  rotation = Eigen::Quaterniond(nearest_rotation(sum));
-  std::vector<Eigen::Vector3d> differences(poses_.size());
-  for (int round = 0; round < kMedianRounds; ++round) {
-    for (std::size_t k = 0; k < poses_.size(); ++k) {
-      differences[k] = log_so3((rotation.conjugate() * rotations[k]).toRotationMatrix());
-    }
-    rotation = (rotation * Eigen::Quaterniond(exp_so3(median(differences)))).normalized();
-  }
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    differences[k] = poses_[k].hand_in_room_mm +
-                     poses_[k].room_from_hand * unknowns_.eye_in_hand_mm -
-                     rotation * poses_[k].eye_in_scene_mm;
-  }
-  unknowns_.scene_in_room_mm = median(differences);
+  place_scene(poses_, unknowns_);
 }
 
 double PoseProblem::loss(double norm) const {

@@ -60,7 +60,6 @@ class PoseProblem {
   Pose room_from_scene() const;  ///< scene in mm
 
  private:
-  void place_scene();
   /// Adds up the poses, the information where there is room for it.
   void add_poses(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns, double& cost,
                  UnknownsVector& gradient, UnknownsMatrix* information) const;

@@ -2,6 +2,7 @@
 #include "daemon/handeye/usable.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -17,6 +18,11 @@ bool is_usable(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.linear();
   return (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm() < kRounding &&
          rotation.determinant() > 0;
+}
+
+bool is_usable(const HandEyeSolution& solution) {
+  return is_usable(solution.hand_from_eye) && std::isnormal(solution.scale_units_per_mm) &&
+         solution.scale_units_per_mm > 0;
 }
 
 bool are_usable(std::span<const PosePair> poses) {

@@ -119,6 +119,57 @@ TEST(PatternUsage, EyeAndBoardGoTogether) {
   expect_one_line(run({handeye(), "replay", "x", "--eye", "lidar"}), 1, "lidar");
 }
 
+TEST(PatternUsage, ABoardThatCannotBeFoundIsRefused) {
+  for (const auto& [board, word] :
+       {std::pair("chessboard:2x6:5", "3 to 100"),
+        std::pair("charuco:20x20:5:3:DICT_4X4_50", "needs 200 markers, DICT_4X4_50 has 50")}) {
+    expect_one_line(run({handeye(), "calibrate", "--eye", "pattern", "--board", board}), 1, word);
+    expect_one_line(run({handeye(), "intrinsics", "x.png", "--board", board}), 1, word);
+  }
+}
+
+class PatternRequest : public RoomTest {
+ protected:
+  static request_t start(const std::string& board) {
+    request_t request = start_request(30);
+    request.eye = request_t::EYE_PATTERN;
+    request.board = board;
+    return request;
+  }
+};
+
+TEST_F(PatternRequest, OfNoBoardIsRefusedAndTheDaemonGoesOn) {
+  Room room;
+  ASSERT_TRUE(room.start_simulator({.seed = 3, .board = kChessboard.text}));
+  ASSERT_TRUE(room.start_daemon());
+  Listener& listener = room.listener();
+  for (const char* board : {"chessboard:2x6:5", "charuco:20x20:5:3:DICT_4X4_50", "\x1b[2J"}) {
+    const request_t request = start(board);
+    ASSERT_TRUE(listener.ask(request)) << board;
+    EXPECT_EQ(listener.ack_code(request.request_id), status_t::ACK_BAD_REQUEST) << board;
+    EXPECT_THAT(listener.ack_text(request.request_id), HasSubstr("board")) << board;
+  }
+  EXPECT_EQ(listener.session_state(), status_t::IDLE);
+
+  // The smallest boards there are, none of which is in view.
+  for (const char* board : {"chessboard:3x3:5", "charuco:3x3:5:3:DICT_4X4_50"}) {
+    const request_t request = start(board);
+    ASSERT_TRUE(listener.ask(request)) << board;
+    EXPECT_EQ(listener.ack_code(request.request_id), status_t::ACK_TAKEN) << board;
+    EXPECT_TRUE(listener.spin_until(
+        [&] { return listener.statuses().back().frames_collected > 10; }, seconds(30)))
+        << board;
+    // What a START would be asked about does not matter to a CANCEL.
+    request_t cancel = cancel_request(request.request_id);
+    cancel.eye = 9;
+    cancel.board = "chessboard:2x6:5";
+    ASSERT_TRUE(listener.ask(cancel));
+    EXPECT_EQ(listener.ack_code(cancel.request_id), status_t::ACK_TAKEN) << board;
+    EXPECT_TRUE(listener.spin_until([&] { return listener.session_state() == status_t::CANCELLED; },
+                                    seconds(30)));
+  }
+}
+
 TEST(IntrinsicsUsage, SaysWhatIsWrongInOneLine) {
   const TemporaryFolder folder;
   write_bytes(folder / "text.png", "no image");

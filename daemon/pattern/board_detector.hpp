@@ -19,7 +19,7 @@ struct BoardCorner {
 
 struct BoardDetectorOptions {
   /// Look harder: for single pictures, where a second is nothing. In a video a frame that shows no
-  /// board must be done within milliseconds, and another comes soon.
+  /// board must be done soon (one of three ways of searching a frame), and another comes.
   bool thorough{false};
 };
 

@@ -20,6 +20,8 @@ constexpr int kLeastEvened_px = 3;
 // Of the spacing: room for the corner, and to err in the shrunk image.
 constexpr double kWindow = 0.2;
 
+constexpr int kWays = 3;
+
 // Not OpenCV's adaptive threshold: over a board that is partly out of view it takes a second and
 // more, and an image that was evened out before does without.
 constexpr int kQuick = cv::CALIB_CB_FAST_CHECK;
@@ -52,10 +54,23 @@ class ChessboardDetector final : public BoardDetector {
  private:
   cv::Size size() const { return {board_.columns, board_.rows}; }
 
+  /// Every way of searching where the image before showed the board; else one an image, in turn,
+  /// so that a board that is out of view costs a third.
   bool search(const cv::Mat& grey) {
-    return search_in(search_image_.shrink(grey, kPlainWidth_px)) ||
-           search_evened_out(grey, kNearWidth_px) ||
-           (grey.cols > kNearWidth_px && search_evened_out(grey, kFarWidth_px));
+    bool found = false;
+    if (in_view_ || options_.thorough) {
+      for (int way = 0; way < kWays && !found; ++way) found = search_one_way(grey, way);
+    } else {
+      found = search_one_way(grey, next_way_);
+      next_way_ = (next_way_ + 1) % kWays;
+    }
+    in_view_ = found;
+    return found;
+  }
+  bool search_one_way(const cv::Mat& grey, int way) {
+    if (way == 0) return search_in(search_image_.shrink(grey, kPlainWidth_px));
+    if (way == 1) return search_evened_out(grey, kNearWidth_px);
+    return grey.cols > kNearWidth_px && search_evened_out(grey, kFarWidth_px);
   }
   bool search_evened_out(const cv::Mat& grey, int width) {
     const int columns = search_image_.shrink(grey, width).cols;
@@ -79,6 +94,8 @@ class ChessboardDetector final : public BoardDetector {
   BoardDetectorOptions options_;
   CornerOrder order_;
   SearchImage search_image_;
+  bool in_view_{true};  ///< the first image is searched in every way
+  int next_way_{0};
   std::vector<int> ids_;
   std::vector<cv::Point2f> pixels_;
 };

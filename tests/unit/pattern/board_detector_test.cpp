@@ -94,6 +94,19 @@ TEST_P(EveryBoard, LeavesNothingOfTheImageBefore) {
   EXPECT_TRUE(corners.empty());
 }
 
+/// A lost board is looked for in one way an image; within three it is found again.
+TEST_P(EveryBoard, IsFoundAgainSoonAfterItWasLost) {
+  BoardImages images(GetParam(), test::endoscope());
+  const auto detector = make_board_detector(GetParam());
+  for (int lost = 1; lost <= 4; ++lost) {
+    for (int k = 0; k < lost; ++k) EXPECT_TRUE(detect(*detector, tissue()).empty());
+    const cv::Mat seen = images.image(board_in_view(GetParam(), 80, {0.2, 0.1, 0}));
+    bool found = false;
+    for (int k = 0; k < 3 && !found; ++k) found = !detect(*detector, seen).empty();
+    EXPECT_TRUE(found) << "after " << lost;
+  }
+}
+
 TEST_P(EveryBoard, IsNotFoundInAnImageTooSmallForIt) {
   for (const cv::Size size :
        {cv::Size(1, 1), cv::Size(8, 8), cv::Size(1, 480), cv::Size(2000, 1)}) {

@@ -35,7 +35,10 @@ ExitCode run_intrinsics(const IntrinsicsCommandOptions& options) {
   const bool accepted = intrinsics.problem == IntrinsicsProblem::kNone;
   if (accepted) write_camera_model(options.camera_file, intrinsics.camera);
   if (options.output.json) {
-    print_text(dump_json(intrinsics_json(intrinsics, board, images)) + "\n");
+    auto json = intrinsics_json(intrinsics, board, images);
+    json["camera_file"] = nullptr;
+    if (accepted) json["camera_file"] = options.camera_file.string();
+    print_text(dump_json(json) + "\n");
   } else {
     std::string text = intrinsics_text(intrinsics, images, options.output.palette());
     if (accepted) text += fmt::format("  written to {}\n", options.camera_file.string());

@@ -108,7 +108,7 @@ std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservatio
 void weigh(std::span<const HandEyeObservation> observations, const MaximumLikelihoodResult& result,
            const JudgeOptions& options, Judgement& judgement) {
   judgement.covariance = result.covariance;
-  if (observations.size() >= 2 * kMinHalf) {
+  if (result.poses_used >= 2 * kMinHalf) {
     if (const auto halves = compare_halves(observations, result.solution, options)) {
       judgement.halves_chi2 = halves->chi2;
       if (halves->chi2 > options.halves_chi2_by_chance) {
@@ -154,16 +154,16 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   Judgement judgement;
   if (result) weigh(observations, *result, options, judgement);
-  if (result && observations.size() >= kMinPoses) {
-    const bool two_halves = judgement.halves_chi2.has_value() || observations.size() < 2 * kMinHalf;
+  const bool enough = result && result->poses_used >= kMinPoses;
+  if (enough) {
+    const bool two_halves = judgement.halves_chi2.has_value() || result->poses_used < 2 * kMinHalf;
     if (two_halves && suffices(judgement.covariance, *result, options)) {
       judgement.problem = MotionProblem::kNone;
       return judgement;
     }
   }
   // Precise by itself: the motion was enough, and the halves disagree.
-  const bool uncertain =
-      result && observations.size() >= kMinPoses && suffices(result->covariance, *result, options);
+  const bool uncertain = enough && suffices(result->covariance, *result, options);
   judgement.problem =
       uncertain ? MotionProblem::kUncertain : problem_of(observations, result, options);
   if (result) {

@@ -25,6 +25,12 @@ double square(double x) {
   return x * x;
 }
 
+bool usable(const PoseNoise& noise) {
+  const auto good = [](double sigma) { return std::isnormal(sigma) && sigma > 0; };
+  return good(noise.hand_rotation_rad) && good(noise.hand_translation_mm) &&
+         good(noise.eye_rotation_rad) && good(noise.eye_translation_mm);
+}
+
 bool usable(std::span<const HandEyeObservation> observations) {
   const auto good = [](const HandEyeObservation& o) {
     return is_usable(o.poses.room_from_hand) && is_usable(o.poses.eye_from_scene) &&
@@ -100,12 +106,15 @@ MaximumLikelihoodResult describe(const PoseProblem& problem,
   return result;
 }
 
-MaximumLikelihoodResult refine(std::span<const HandEyeObservation> observations,
-                               const HandEyeSolution& start,
-                               const MaximumLikelihoodOptions& options) {
+std::optional<MaximumLikelihoodResult> refine(std::span<const HandEyeObservation> observations,
+                                              const HandEyeSolution& start,
+                                              const MaximumLikelihoodOptions& options) {
+  if (!usable(options.noise)) return std::nullopt;
   PoseProblem problem(observations, start, options);
   const ResidualNoise::Variances variances = solve_without_outliers(problem, options);
-  return describe(problem, variances, options);
+  MaximumLikelihoodResult result = describe(problem, variances, options);
+  if (!is_usable(result.solution) || !result.covariance.allFinite()) return std::nullopt;
+  return result;
 }
 
 std::optional<MaximumLikelihoodResult> from_movements(

@@ -63,7 +63,8 @@ struct MaximumLikelihoodResult {
 /// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene and, if
 /// wanted, s and a correction of the time offset. `observations` in order of time, unless their
 /// correlation is not accounted for. One thread: the same answer every time. Nothing for fewer than
-/// three poses, numbers that are not finite or matrices that are not rotations.
+/// three poses, numbers that are not finite, matrices that are not rotations or noise that is not
+/// positive.
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
     const MaximumLikelihoodOptions& options = {});

@@ -23,6 +23,7 @@ ResidualNoise::Variances fit_noise(const std::vector<Vector6d>& residuals,
                                    const ResidualNoise::Variances& assumed,
                                    const ResidualNoise::Variances& start) {
   const auto n = static_cast<double>(residuals.size());
+  if (!(6.0 * n > static_cast<double>(parameters))) return start;  // residuals say nothing
   const double freedom = n / (n - static_cast<double>(parameters) / 6.0);
   const Matrix6d prior = kPriorPoses * noise.covariance(assumed);
   ResidualNoise::Variances variances = start;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "daemon/handeye/noise_fit.hpp"
 #include "daemon/handeye/usable.hpp"
@@ -60,12 +61,20 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Fewer than determine an answer, or so few that the others might as well be right.
+bool too_few(const std::vector<bool>& kept) {
+  const auto left = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
+  return left < kFewestLikelihoodPoses || 2 * left < kept.size();
+}
+
 /// Leaves out what already the start says is far from all others: one pose that is metres off turns
 /// the whole scene, whatever the loss.
 void leave_out_far_ones(PoseProblem& problem, const MaximumLikelihoodOptions& options) {
   if (!(options.reject > 0)) return;
   const std::vector<double> norms = problem.norms(variances_of(options.noise));
-  problem.keep(within(norms, kFarFromMedian * std::max(median(norms), 1.0)));
+  std::vector<bool> near = within(norms, kFarFromMedian * std::max(median(norms), 1.0));
+  if (too_few(near)) return;
+  problem.keep(std::move(near));
 }
 
 }  // namespace
@@ -77,8 +86,7 @@ ResidualNoise::Variances solve_without_outliers(PoseProblem& problem,
   for (int pass = 0; options.reject > 0 && pass < kRejections; ++pass) {
     const std::vector<double> norms = problem.norms(variances);
     std::vector<bool> kept = within(norms, options.reject);
-    const auto left = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
-    if (left < kFewestLikelihoodPoses || 2 * left < kept.size()) kept.assign(norms.size(), true);
+    if (too_few(kept)) kept.assign(norms.size(), true);
     if (kept == problem.kept()) break;
     problem.keep(std::move(kept));
     variances = solve(problem, options);

@@ -39,6 +39,17 @@ TEST(Judge, AcceptsAFreeHand) {
   }
 }
 
+/// However many were recorded: what was left out says nothing for the answer.
+TEST(Judge, CountsThePosesThatWereUsed) {
+  const auto observations =
+      record(scope(0.07), synthetic::free_hand, 300, tracker_and_camera(), 1).observations;
+  auto result = maximum_likelihood(observations);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(judge(observations, result).problem, MotionProblem::kNone);
+  result->poses_used = 4;
+  EXPECT_NE(judge(observations, result).problem, MotionProblem::kNone);
+}
+
 TEST(Judge, NamesWhatTheMotionLacks) {
   for (std::uint32_t seed = 0; seed < 3; ++seed) {
     EXPECT_EQ(problem_of(synthetic::still, seed), MotionProblem::kNoMotion);

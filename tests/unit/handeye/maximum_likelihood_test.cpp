@@ -167,6 +167,12 @@ TEST(MaximumLikelihood, GivesNothingOnUnusableData) {
   EXPECT_FALSE(maximum_likelihood({}));
   EXPECT_FALSE(maximum_likelihood({}, HandEyeSolution{}));
   Recording recording = record(scope(), free_hand, 20, tracker_and_camera(), 7);
+  EXPECT_TRUE(maximum_likelihood(recording.observations, scope().solution));
+  for (const double sigma : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN()}) {
+    const PoseNoise noise{sigma, 0.1, 0.001, 0.1};
+    EXPECT_FALSE(maximum_likelihood(recording.observations, scope().solution, {.noise = noise}));
+    EXPECT_FALSE(maximum_likelihood(recording.observations, {.noise = noise}));
+  }
   recording.observations[3].poses.eye_from_scene.translation().x() =
       std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(maximum_likelihood(recording.observations, scope().solution));

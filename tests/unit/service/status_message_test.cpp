@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/status_message.hpp"
 
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -102,8 +104,8 @@ TEST(ReadRequest, RejectsABoardThatCannotBeFound) {
 }
 
 TEST(ReadRequest, ReadsEyeAndBoardOfAStartOnly) {
-  for (const std::int32_t action :
-       {request_t::FINISH, request_t::CANCEL, request_t::DESCRIBE, request_t::RECORD}) {
+  for (const std::int32_t action : std::vector<std::int32_t>{
+           request_t::FINISH, request_t::CANCEL, request_t::DESCRIBE, request_t::RECORD}) {
     request_t message = good_request(action);
     message.eye = 77;
     message.board = "tablecloth";

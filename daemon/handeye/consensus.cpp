@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/consensus.hpp"
+
 #include <algorithm>
 
-#include "daemon/handeye/consensus.hpp"
 #include "daemon/handeye/explained.hpp"
 #include "daemon/handeye/pairing.hpp"
 #include "daemon/handeye/usable.hpp"

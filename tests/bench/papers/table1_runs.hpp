@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-/// What the replays of one set-up of Schmidt, Vogt and Niemann's Table 1 said, summed up over the simulated scopes.
+/// What the replays of one set-up of Schmidt, Vogt and Niemann's Table 1 said, summed up over the
+/// simulated scopes.
 namespace handeye::papers {
 
 /// Medians over the runs in which the method found an answer; NaN where there was none.

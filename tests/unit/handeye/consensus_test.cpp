@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/consensus.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/handeye/consensus.hpp"
 #include "tests/unit/handeye/spoiled.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 

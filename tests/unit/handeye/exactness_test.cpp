@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <random>
 #include <string>
 
 #include <Eigen/SVD>
@@ -11,36 +10,19 @@
 #include <rapidcheck.h>
 
 #include "daemon/handeye/methods/methods.hpp"
+#include "tests/unit/handeye/draw.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 
 /// Every method of both tables on exact data: what it may lose is what double precision takes.
 namespace handeye {
 namespace {
 
+using synthetic::Draw;
+
 constexpr double kRotationTolerance_rad = 1e-9;
 constexpr double kTranslationTolerance = 1e-8;  // of the larger of |t_X| and the mean |t_H|
 constexpr double kScaleTolerance = 1e-10;
 constexpr double kMaxCondition = 1e3;
-
-/// Draws within a configuration. RapidCheck draws the configuration's shape, which it can shrink.
-class Draw {
- public:
-  explicit Draw(std::uint32_t seed) : generator_(seed) {}
-  double uniform(double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(generator_);
-  }
-  double power_of_ten(double from, double to) { return std::pow(10.0, uniform(from, to)); }
-  Eigen::Vector3d normal3() {
-    const double x = normal_(generator_);
-    const double y = normal_(generator_);
-    return {x, y, normal_(generator_)};
-  }
-  Eigen::Vector3d direction() { return normal3().normalized(); }
-
- private:
-  std::mt19937 generator_;
-  std::normal_distribution<double> normal_;
-};
 
 enum class Angles { kAny, kNearHalfTurn, kSome };
 

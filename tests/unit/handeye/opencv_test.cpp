@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "daemon/handeye/methods/methods.hpp"
+#include "tests/unit/handeye/draw.hpp"
 #include "tests/unit/handeye/synthetic.hpp"
 
 /// Our methods against those of OpenCV's calibrateHandEye of the same name, on the same poses: the
@@ -18,6 +18,7 @@ namespace handeye {
 namespace {
 
 using synthetic::all_movements;
+using synthetic::Draw;
 
 constexpr int kSeeds = 200;
 constexpr double kMostWorse = 1.02;
@@ -41,24 +42,6 @@ struct Regime {
   double travel_mm{100};
   double lever_mm{100};
   PoseNoise noise;
-};
-
-class Draw {
- public:
-  explicit Draw(std::uint32_t seed) : generator_(seed) {}
-  double uniform(double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(generator_);
-  }
-  Eigen::Vector3d normal3() {
-    const double x = normal_(generator_);
-    const double y = normal_(generator_);
-    return {x, y, normal_(generator_)};
-  }
-  Eigen::Vector3d direction() { return normal3().normalized(); }
-
- private:
-  std::mt19937 generator_;
-  std::normal_distribution<double> normal_;
 };
 
 Pose pose_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/geometry/camera_model.hpp"
+#include "daemon/geometry/intrinsics_mode.hpp"
 #include "daemon/geometry/pose.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 
@@ -31,7 +32,8 @@ struct ReconstructionOptions {
 struct RegisteredFrame {
   std::int64_t index{0};  ///< TrackedFrame::index
   std::int64_t timestamp_ns{0};
-  Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units
+  Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units, of its part
+  int part{0};  ///< frames of one part share scene and scale; 0 has the most frames
   bool keyframe{false};
   double reprojection_px{0};  ///< rms over its inlier observations
   int inliers{0};
@@ -45,11 +47,29 @@ enum class ReconstructionState {
   kTracking,        ///< started; frames are being registered
 };
 
+/// Standard deviations of a lens that was adjusted.
+struct LensSigma {
+  double focal_px{0};
+  double centre_px{0};  ///< the larger of cx and cy
+  double k1{0}, k2{0};
+  double distortion_px{0};  ///< of where the lens takes a ray, the largest over the image
+};
+
+/// The lens as it came out of a reconstruction.
+struct Lens {
+  CameraModel camera;
+  IntrinsicsMode mode{IntrinsicsMode::kFixed};
+  bool observable{true};  ///< false: the images do not tell; the camera must not be believed
+  LensSigma sigma;        ///< all 0 where it was fixed
+};
+
 struct Reconstruction {
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
-  std::vector<RegisteredFrame> frames;  ///< of the largest connected part, in order of time
+  std::vector<RegisteredFrame> frames;  ///< of all parts worth keeping, in order of time
+  int parts{0};
   int points{0};
-  double reprojection_px{0};  ///< rms over all inlier observations of that part
+  double reprojection_px{0};  ///< rms over all inlier observations of those parts
+  Lens lens;
 };
 
 /// Camera motion and scene up to one similarity from feature tracks, frame by frame: two views by

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+
+#include "daemon/tracking/image_condition.hpp"
 
 namespace handeye {
 
@@ -16,11 +19,20 @@ struct Observation {
   Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};  ///< px, pixel centres at integers
 };
 
+/// What a feature looks like, to be found again after its track was lost.
+struct FeatureDescription {
+  std::int64_t feature_id{0};
+  std::array<std::uint8_t, 32> bits{};  ///< oriented BRIEF; compared by Hamming distance
+};
+
 /// What was tracked into one image, ordered by feature_id.
 struct TrackedFrame {
   std::int64_t timestamp_ns{0};  ///< camera stamp of the image
   std::int64_t index{0};         ///< counts the frames given to the tracker, from 0
+  ImageCondition condition{ImageCondition::kGood};  ///< dark, frozen: there are no observations
   std::vector<Observation> observations;
+  /// Of features that had none yet, each once in its life, soon after its first appearance.
+  std::vector<FeatureDescription> descriptions;
 };
 
 /// Images wider than 1280 px are worked on at half their size or less, lightly smoothed: the optics

@@ -12,9 +12,9 @@ namespace handeye {
 /// Hand and eye at one instant, and how the hand was moving.
 struct HandEyeObservation {
   PosePair poses;
-  int part{0};  ///< poses of one part share room_from_scene and scale; hand_from_eye all share
   Eigen::Vector3d hand_angular_velocity{Eigen::Vector3d::Zero()};  ///< in the hand frame [rad/s]
   Eigen::Vector3d hand_velocity{Eigen::Vector3d::Zero()};  ///< of its origin, in the room [mm/s]
+  int part{0};  ///< poses of one part share room_from_scene and scale; hand_from_eye all share
 };
 
 struct MaximumLikelihoodOptions {

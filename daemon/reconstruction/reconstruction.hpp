@@ -33,10 +33,10 @@ struct RegisteredFrame {
   std::int64_t index{0};  ///< TrackedFrame::index
   std::int64_t timestamp_ns{0};
   Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units, of its part
-  int part{0};  ///< frames of one part share scene and scale; 0 has the most frames
   bool keyframe{false};
   double reprojection_px{0};  ///< rms over its inlier observations
   int inliers{0};
+  int part{0};  ///< frames of one part share scene and scale; 0 has the most frames
 };
 
 /// Why there is no reconstruction (yet).

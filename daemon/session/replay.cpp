@@ -11,6 +11,7 @@
 #include "daemon/session/hand_stream.hpp"
 #include "daemon/session/image_stage.hpp"
 #include "daemon/session/stopwatch.hpp"
+#include "daemon/session/tracking_ahead.hpp"
 #include "drivers/recording/recording.hpp"
 #include "protocol/exit_codes.hpp"
 
@@ -88,13 +89,12 @@ CalibrationResult replay(const ReplayOptions& options) {
   Calibration calibration(calibration_options(options, camera, recording.datagrams.size()));
 
   if (const auto problem = recording.camera->open()) throw InputError(*problem);
-  Frame frame;
+  TrackingAhead tracking(*recording.camera, *images,
+                         [&](const Frame& frame) { require_size(frame, camera, options); });
   TrackedFrame tracked;
   std::int64_t frames_done = 0;
-  while (recording.camera->grab(frame, std::chrono::milliseconds(0)) == GrabStatus::kFrame) {
-    require_size(frame, camera, options);
-    hand.feed_until(frame.timestamp_ns, calibration);
-    images->process(frame, tracked);
+  while (tracking.next(tracked)) {
+    hand.feed_until(tracked.timestamp_ns, calibration);
     calibration.add_frame(tracked);
     if (options.progress && ++frames_done % kProgressEvery == 0) options.progress(frames_done);
   }

@@ -242,8 +242,12 @@ Reconstruction Segment::result() const {
   double count = 0.0;
   for (const FrameRecord& frame : frames_) {
     if (!frame.eye_from_scene) continue;
-    result.frames.push_back({frame.index, frame.timestamp_ns, *frame.eye_from_scene, frame.keyframe,
-                             frame.reprojection_px, frame.inliers});
+    result.frames.push_back({.index = frame.index,
+                             .timestamp_ns = frame.timestamp_ns,
+                             .eye_from_scene = *frame.eye_from_scene,
+                             .keyframe = frame.keyframe,
+                             .reprojection_px = frame.reprojection_px,
+                             .inliers = frame.inliers});
     sum += frame.inliers * frame.reprojection_px * frame.reprojection_px;
     count += frame.inliers;
   }

@@ -47,6 +47,7 @@ struct IncrementalReconstruction::Impl {
   Reconstruction result() const {
     Reconstruction result = largest().result();
     if (result.state != ReconstructionState::kTracking) result.state = prevailing_state();
+    result.lens.camera = camera;
     return result;
   }
 
@@ -78,6 +79,12 @@ Reconstruction IncrementalReconstruction::current() const {
 Reconstruction IncrementalReconstruction::finish() {
   impl_->largest().finish();
   return impl_->result();
+}
+
+void IncrementalReconstruction::set_camera(const CameraModel& camera) {
+  impl_->camera = camera;
+  impl_->active->refresh_rays();
+  if (impl_->largest_closed) impl_->largest_closed->refresh_rays();
 }
 
 int IncrementalReconstruction::keyframes() const {

@@ -94,6 +94,11 @@ class IncrementalReconstruction {
   /// May be called more than once, and frames may be added after it.
   Reconstruction finish();
 
+  /// Another lens from here on, whose image has the same size: the rays kept in the scenes are
+  /// computed anew; poses and points stay until the next adjustment, or `finish`, moves them. Meant
+  /// for small changes: after large ones it is better to begin again with all frames.
+  void set_camera(const CameraModel& camera);
+
   /// Keyframes so far, over all parts.
   int keyframes() const;
 

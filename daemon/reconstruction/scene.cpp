@@ -38,6 +38,16 @@ void Scene::remove_keyframe(int keyframe) {
   keyframes.erase(keyframes.begin() + keyframe);
 }
 
+void Scene::refresh_rays(const CameraModel& camera) {
+  for (Track& track : tracks) {
+    std::erase_if(track.observations, [&camera](TrackObservation& seen) {
+      const auto ray = unproject(camera, seen.pixel);
+      if (ray) seen.ray = *ray;
+      return !ray;
+    });
+  }
+}
+
 void Scene::find_matches(const FrameRecord& frame, std::vector<PointMatch>& matches) const {
   matches.clear();
   for (const FrameObservation& seen : frame.observations) {

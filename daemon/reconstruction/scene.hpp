@@ -50,6 +50,9 @@ class Scene {
   /// Forgets a keyframe and its observations.
   void remove_keyframe(int keyframe);
 
+  /// Computes all rays anew, for another lens; observations that have none under it are dropped.
+  void refresh_rays(const CameraModel& camera);
+
   /// The features of a frame that have a point.
   void find_matches(const FrameRecord& frame, std::vector<PointMatch>& matches) const;
 

@@ -30,6 +30,9 @@ class Segment {
   /// Adjusts all keyframes and points until nothing changes and registers all other frames again.
   void finish();
 
+  /// To be called when the camera it was given has changed.
+  void refresh_rays() { scene_.refresh_rays(camera_); }
+
   bool started() const { return !scene_.keyframes.empty(); }
   int keyframe_count() const { return static_cast<int>(scene_.keyframes.size()); }
   int registered_count() const { return registered_; }

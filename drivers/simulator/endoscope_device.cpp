@@ -13,11 +13,10 @@ constexpr std::int64_t kDeliveryNs = 2'000'000;
 
 }  // namespace
 
-EndoscopeDevice::EndoscopeDevice(const World& world)
-    : world_(&world), renderer_(world.surface, world.camera, world.options.seed) {}
+EndoscopeDevice::EndoscopeDevice(const World& world) : world_(&world), view_(world) {}
 
 double EndoscopeDevice::exposure_s(std::uint32_t number) const {
-  return number / world_->options.camera_rate_hz;
+  return view_.exposed_s(number);
 }
 
 std::int64_t EndoscopeDevice::timestamp_ns(std::uint32_t number) const {
@@ -29,7 +28,7 @@ void EndoscopeDevice::make(std::uint32_t number, SimulatedFrame& frame) {
   frame.exposed_s = exposure_s(number);
   frame.timestamp_ns = timestamp_ns(number);
   frame.arrival_ns = frame.timestamp_ns + kDeliveryNs;
-  renderer_.render(world_->motion.surface_from_eye(frame.exposed_s), number, frame.grey);
+  view_.draw(number, frame.grey);
   encode(frame);
 }
 

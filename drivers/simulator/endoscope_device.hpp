@@ -6,7 +6,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "drivers/simulator/renderer.hpp"
+#include "drivers/simulator/endoscope_view.hpp"
 #include "drivers/simulator/world.hpp"
 
 namespace handeye::simulator {
@@ -34,6 +34,9 @@ class EndoscopeDevice {
   double exposure_s(std::uint32_t number) const;
   std::int64_t timestamp_ns(std::uint32_t number) const;
 
+  /// Whether the frame gets lost on its way.
+  bool is_missing(std::uint32_t number) const { return view_.fate(number).missing; }
+
   /// Renders and encodes a frame; its memory is reused.
   void make(std::uint32_t number, SimulatedFrame& frame);
 
@@ -41,7 +44,7 @@ class EndoscopeDevice {
   void encode(SimulatedFrame& frame) const;
 
   const World* world_;
-  Renderer renderer_;
+  EndoscopeView view_;
 };
 
 }  // namespace handeye::simulator

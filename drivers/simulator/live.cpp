@@ -89,6 +89,10 @@ void LiveDevices::render_frames(const std::stop_token& stop) {
     skipped_ += in_time - number;
     number = in_time;
     if (number == end) break;
+    if (endoscope_.is_missing(number)) {
+      empty_.put(std::move(*frame));
+      continue;
+    }
     const std::int64_t begin_ns = monotonic_ns();
     endoscope_.make(number, **frame);
     cost_ns = monotonic_ns() - begin_ns;

@@ -21,6 +21,10 @@ enum class Purpose : std::uint32_t {
   kClocks,
   kTrackerNoise,
   kArrivals,
+  kWetFilm,
+  kFlicker,
+  kFieldStop,
+  kInstrument,
 };
 
 /// Random numbers that depend on seed and purpose alone.

@@ -24,17 +24,17 @@ class FrameBatches {
     for (std::size_t i = 0; i < frames_.size(); ++i) devices_.emplace_back(world);
   }
 
-  /// The next frames, beginning with `first`, up to but without `end`.
-  std::span<const SimulatedFrame> make(std::uint32_t first, std::uint32_t end) {
-    const std::size_t count = std::min<std::size_t>(frames_.size(), end - first);
+  /// The next frames that arrive, from number `next` up to but without `end`; `next` moves on.
+  std::span<const SimulatedFrame> make(std::uint32_t& next, std::uint32_t end) {
     std::vector<std::future<void>> pending;
-    for (std::size_t i = 0; i < count; ++i) {
-      pending.push_back(std::async(std::launch::async, [this, first, i] {
-        devices_[i].make(first + static_cast<std::uint32_t>(i), frames_[i]);
+    for (; pending.size() < frames_.size() && next < end; ++next) {
+      if (devices_.front().is_missing(next)) continue;
+      pending.push_back(std::async(std::launch::async, [this, number = next, i = pending.size()] {
+        devices_[i].make(number, frames_[i]);
       }));
     }
     for (std::future<void>& result : pending) result.get();
-    return {frames_.data(), count};
+    return {frames_.data(), pending.size()};
   }
 
  private:
@@ -71,13 +71,12 @@ DeviceCounts record(const World& world, double duration_s, const std::filesystem
   FrameBatches batches(world);
   const auto frames =
       static_cast<std::uint32_t>(std::ceil(duration_s * world.options.camera_rate_hz));
-  for (std::uint32_t first = 0; first < frames;) {
-    for (const SimulatedFrame& frame : batches.make(first, frames)) {
+  for (std::uint32_t next = 0; next < frames;) {
+    for (const SimulatedFrame& frame : batches.make(next, frames)) {
       write_datagrams_until(frame.arrival_ns);
       writer->write_frame(frame.timestamp_ns, frame.arrival_ns, frame.number, world.camera.width,
                           world.camera.height, frame.jpeg);
       ++counts.frames;
-      ++first;
     }
   }
   write_datagrams_until(std::numeric_limits<std::int64_t>::max());

@@ -6,13 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "drivers/simulator/random_stream.hpp"
 #include "protocol/exit_codes.hpp"
 
 namespace handeye::simulator {
 namespace {
-
-constexpr std::size_t kNoiseTable = 1 << 16;
 
 /// Newton's steps end below this change of depth: the error left is of second order in it.
 constexpr float kConvergedMm = 1e-2F;
@@ -21,19 +18,8 @@ constexpr int kMaxNewtonSteps = 8;
 /// Rays longer than this would be an error of the motion: the view is some 80 to 200 mm deep.
 constexpr double kFarthestMm = 2000.0;
 
-/// Well mixed bits of two numbers (the finaliser of splitmix64).
-std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t bits = a + 0x9e3779b97f4a7c15ULL * (b + 1);
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-  return bits ^ (bits >> 31);
-}
-
-/// Grey level of a radiance (1: a white surface, straight on, at the nominal distance): a camera
-/// head's soft shoulder instead of clipping.
-float tone(float radiance) {
-  return 470.0F * radiance / (radiance + 1.3F);
-}
+/// The lamp sits beside the eye on the tip, in eye coordinates [mm].
+constexpr float kLampRightMm = 2.5F;
 
 cv::Mat2f rays_of(const CameraModel& camera) {
   cv::Mat2f rays(camera.height, camera.width);
@@ -64,24 +50,29 @@ Renderer::Renderer(const Surface& surface, const CameraModel& camera, std::uint6
     : surface_(&surface),
       camera_(camera),
       options_(options),
+      sensor_(camera.width, seed, options.noise_grey),
       rays_(rays_of(camera)),
-      depth_mm_(camera.height, camera.width),
-      noise_(kNoiseTable + static_cast<std::size_t>(camera.width)),
-      seed_(seed) {
-  RandomStream random(seed, Purpose::kImageNoise);
-  for (float& value : noise_) value = static_cast<float>(random.normal(options.noise_grey));
+      depth_mm_(camera.height, camera.width) {
+  if (options.highlights) film_.emplace(seed);
 }
 
 void Renderer::render(const Pose& surface_from_eye, std::uint64_t frame_number, cv::Mat& grey) {
+  render_light(surface_from_eye, radiance_);
+  sensor_.expose(radiance_, frame_number, {}, grey);
+}
+
+void Renderer::render_light(const Pose& surface_from_eye, cv::Mat1f& radiance) {
   const Eigen::Matrix3d rotation = surface_from_eye.linear();
   const View view{padded(surface_from_eye.translation()), padded(rotation.col(0)),
                   padded(rotation.col(1)), padded(rotation.col(2))};
-  grey.create(camera_.height, camera_.width, CV_8UC1);
-  const std::uint64_t frame_bits = mix(seed_, frame_number);
+  radiance.create(camera_.height, camera_.width);
   surface_->visit([&](const auto& kind) {
     for (int row = 0; row < camera_.height; ++row) {
-      const std::uint64_t offset = mix(frame_bits, static_cast<std::uint64_t>(row)) % kNoiseTable;
-      render_row(kind, row, view, noise_.data() + offset, grey.ptr<std::uint8_t>(row));
+      if (film_) {
+        render_row<true>(kind, row, view, radiance[row]);
+      } else {
+        render_row<false>(kind, row, view, radiance[row]);
+      }
     }
   });
 }
@@ -94,9 +85,16 @@ float Renderer::depth_of_first_pixel(int row, const View& view) const {
   return depth ? static_cast<float>(*depth) : static_cast<float>(kFarthestMm);
 }
 
-template <typename Kind>
-void Renderer::render_row(const Kind& kind, int row, const View& view, const float* noise,
-                          std::uint8_t* out) {
+float Renderer::glint(const View& view, const Eigen::Array4f& point,
+                      const Eigen::Array4f& direction, const Relief::Node& node) const {
+  const Eigen::Array4f to_lamp = view.origin + kLampRightMm * view.x_axis - point;
+  const Eigen::Array4f halfway =
+      to_lamp.matrix().normalized().array() - direction.matrix().normalized().array();
+  return film_->glint(point, node[1], node[2], halfway);
+}
+
+template <bool kWet, typename Kind>
+void Renderer::render_row(const Kind& kind, int row, const View& view, float* out) {
   const cv::Vec2f* rays = rays_[row];
   float* depths = depth_mm_[row];
   const float* depths_above = row > 0 ? depth_mm_[row - 1] : nullptr;
@@ -138,9 +136,11 @@ void Renderer::render_row(const Kind& kind, int row, const View& view, const flo
 
     const float albedo =
         kind.albedo({point, direction, to_next_column, to_next_row, depth, cosine, pixel});
-    const float radiance = albedo * light * std::max(cosine, 0.0F) / distance_squared;
-    const float value = tone(radiance) + noise[column] + 0.5F;
-    out[column] = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));
+    out[column] = albedo * light * std::max(cosine, 0.0F) / distance_squared;
+    if constexpr (kWet) {
+      const float mirrored = 255.0F * WetFilm::kShine * light / distance_squared;
+      out[column] += mirrored * glint(view, point, direction, node);
+    }
   }
 }
 

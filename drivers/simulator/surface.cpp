@@ -8,7 +8,20 @@ namespace {
 /// deviation, 0.72 px, is that of a good endoscope in focus.
 constexpr float kBlurPx = 2.5F;
 
+/// Distance to the plane z = 0 along a ray that comes down to it.
+std::optional<double> meet_plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                 double limit) {
+  if (origin.z() < 0 || direction.z() >= 0) return std::nullopt;
+  const double along = -origin.z() / direction.z();
+  return along <= limit ? std::optional(along) : std::nullopt;
+}
+
 }  // namespace
+
+std::optional<double> FlatTissue::intersect(const Eigen::Vector3d& origin,
+                                            const Eigen::Vector3d& direction, double limit) const {
+  return meet_plane(origin, direction, limit);
+}
 
 FlatBoard::FlatBoard(const Board& board)
     : picture_(board),
@@ -24,9 +37,7 @@ Pose FlatBoard::surface_from_board() const {
 
 std::optional<double> FlatBoard::intersect(const Eigen::Vector3d& origin,
                                            const Eigen::Vector3d& direction, double limit) const {
-  if (origin.z() < 0 || direction.z() >= 0) return std::nullopt;
-  const double along = -origin.z() / direction.z();
-  return along <= limit ? std::optional(along) : std::nullopt;
+  return meet_plane(origin, direction, limit);
 }
 
 float FlatBoard::albedo(const PixelRay& ray) const {
@@ -44,6 +55,20 @@ float FlatBoard::albedo(const PixelRay& ray) const {
        .width = static_cast<double>(kBlurPx * std::hypot(along_column[0], along_row[0])),
        .height = static_cast<double>(kBlurPx * std::hypot(along_column[1], along_row[1]))});
 }
+
+Surface::Kind Surface::kind_of(std::uint64_t seed, SceneKind scene) {
+  switch (scene) {
+    case SceneKind::kPlane:
+      return Kind(std::in_place_type<FlatTissue>, seed);
+    case SceneKind::kBare:
+      return Kind(std::in_place_type<BareHills>, seed);
+    case SceneKind::kTissue:
+      break;
+  }
+  return Kind(std::in_place_type<Tissue>, seed);
+}
+
+Surface::Surface(std::uint64_t seed, SceneKind scene) : kind_(kind_of(seed, scene)) {}
 
 std::optional<Pose> Surface::surface_from_board() const {
   const auto* const board = std::get_if<FlatBoard>(&kind_);

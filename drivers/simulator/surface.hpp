@@ -12,6 +12,7 @@
 #include "daemon/geometry/pose.hpp"
 #include "drivers/simulator/board_picture.hpp"
 #include "drivers/simulator/relief.hpp"
+#include "drivers/simulator/scene_kind.hpp"
 #include "drivers/simulator/texture.hpp"
 
 /// What is looked at, in surface coordinates (mm, z towards the viewer). Each kind says its height
@@ -26,6 +27,9 @@ struct PixelRay {
   float depth_mm;
   float cosine;  ///< between the ray and the surface's normal
   float pixel;   ///< a pixel's width over its depth
+
+  /// What the pixel covers of the surface, along its longer side.
+  float footprint_mm() const { return depth_mm * pixel / std::max(cosine, 0.1F); }
 };
 
 /// The lining of a body cavity.
@@ -40,13 +44,48 @@ class Tissue {
     return relief_.intersect(origin, direction, limit);
   }
   float albedo(const PixelRay& ray) const {
-    const float footprint_mm = ray.depth_mm * ray.pixel / std::max(ray.cosine, 0.1F);
-    return texture_.sample(ray.point[0], ray.point[1], footprint_mm);
+    return texture_.sample(ray.point[0], ray.point[1], ray.footprint_mm());
   }
 
  private:
   Relief relief_;
   Texture texture_;
+};
+
+/// The same lining stretched flat.
+class FlatTissue {
+ public:
+  explicit FlatTissue(std::uint64_t seed) : texture_(seed) {}
+
+  double height(double, double) const { return 0; }
+  Relief::Node sample(float, float) const { return Relief::Node::Zero(); }
+  std::optional<double> intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                  double limit) const;
+  float albedo(const PixelRay& ray) const {
+    return texture_.sample(ray.point[0], ray.point[1], ray.footprint_mm());
+  }
+
+ private:
+  Texture texture_;
+};
+
+/// The hills of the lining without anything on them.
+class BareHills {
+ public:
+  explicit BareHills(std::uint64_t seed) : relief_(seed) {}
+
+  double height(double x_mm, double y_mm) const { return relief_.height(x_mm, y_mm); }
+  Relief::Node sample(float x_mm, float y_mm) const { return relief_.sample(x_mm, y_mm); }
+  std::optional<double> intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                  double limit) const {
+    return relief_.intersect(origin, direction, limit);
+  }
+  float albedo(const PixelRay&) const { return kAlbedo; }
+
+ private:
+  static constexpr float kAlbedo = 130.0F;  ///< the lining's mean
+
+  Relief relief_;
 };
 
 /// A calibration board that lies flat, its middle at the origin, upright for a viewer who looks
@@ -71,7 +110,7 @@ class FlatBoard {
 
 class Surface {
  public:
-  explicit Surface(std::uint64_t seed) : kind_(std::in_place_type<Tissue>, seed) {}
+  explicit Surface(std::uint64_t seed, SceneKind scene = SceneKind::kTissue);
 
   /// Throws UsageError when the board cannot be drawn.
   explicit Surface(const Board& board) : kind_(std::in_place_type<FlatBoard>, board) {}
@@ -97,7 +136,11 @@ class Surface {
   std::optional<Pose> surface_from_board() const;
 
  private:
-  std::variant<Tissue, FlatBoard> kind_;
+  using Kind = std::variant<Tissue, FlatTissue, BareHills, FlatBoard>;
+
+  static Kind kind_of(std::uint64_t seed, SceneKind scene);
+
+  Kind kind_;
 };
 
 }  // namespace handeye::simulator

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/simulator/world.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace handeye::simulator {
@@ -22,6 +23,7 @@ CameraModel draw_camera(const SimulatorOptions& options) {
   camera.cy = 0.5 * (options.height - 1) + scale * random.uniform(-8.0, 8.0);
   camera.distortion[0] = random.uniform(-0.12, -0.06);
   camera.distortion[1] = random.uniform(0.0, 0.03);
+  if (options.lens) std::ranges::copy(*options.lens, camera.distortion.begin());
   return camera;
 }
 
@@ -47,7 +49,7 @@ Pose draw_room_from_surface(std::uint64_t seed) {
 }
 
 Surface surface_of(const SimulatorOptions& options) {
-  return options.board ? Surface(*options.board) : Surface(options.seed);
+  return options.board ? Surface(*options.board) : Surface(options.seed, options.scene);
 }
 
 MotionOptions motion_options(const SimulatorOptions& options) {

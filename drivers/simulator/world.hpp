@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "daemon/geometry/board.hpp"
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/pose.hpp"
+#include "drivers/simulator/disturbance.hpp"
 #include "drivers/simulator/motion.hpp"
+#include "drivers/simulator/scene_kind.hpp"
 #include "drivers/simulator/surface.hpp"
 
 namespace handeye::simulator {
@@ -18,9 +21,13 @@ struct SimulatorOptions {
   MotionKind motion{MotionKind::kFree};
   double largest_turn_deg{20.0};  ///< about each axis
   double largest_shift_mm{15.0};  ///< along each axis
-  std::optional<Board> board;     ///< what is looked at instead of tissue
-  int width{640};                 ///< px
-  int height{480};                ///< px
+  SceneKind scene{SceneKind::kTissue};
+  std::optional<Board> board;                 ///< what is looked at instead
+  int width{640};                             ///< px
+  int height{480};                            ///< px
+  std::optional<std::array<double, 2>> lens;  ///< k1 and k2 instead of drawn ones
+  double image_noise_grey{1.5};               ///< standard deviation, grey levels
+  Disturbances disturbances;
   double camera_rate_hz{25.0};
   double tracker_rate_hz{60.0};
   double tracker_noise_deg{0.06};  ///< standard deviation per axis

@@ -14,7 +14,7 @@ constexpr int kMaskAttempts = 10;
 }  // namespace
 
 TrackingStage::TrackingStage(cv::Mat mask)
-    : tracker_(make_lucas_kanade_tracker()),
+    : tracker_(make_feature_tracker()),
       mask_(std::move(mask)),
       mask_attempts_left_(mask_.empty() ? kMaskAttempts : 0) {}
 

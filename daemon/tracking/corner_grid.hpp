@@ -2,43 +2,51 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
+
+#include "daemon/tracking/image_pyramid.hpp"
 
 namespace handeye {
 
 struct Corner {
-  cv::Point2f pixel;
-  float strength{0};  ///< smaller eigenvalue of the structure tensor
+  int x{0}, y{0};     ///< px at the working size (the pyramid's level 0)
+  float strength{0};  ///< smaller eigenvalue of the mean structure tensor, (grey levels / px)^2
 };
 
 /// Shi-Tomasi corners, at most one a cell, only in cells that hold no feature: as long as features
 /// live next to nothing is computed. (Detection on the whole image costs several times the
-/// tracking.)
+/// tracking.) Looks at the half-size image: what is sought is a patch that can be located, not the
+/// tip of a corner.
 class CornerGrid {
  public:
   /// `cells` is about how many cells the image is cut into.
   CornerGrid(cv::Size image_size, int cells, double min_distance_px);
 
-  /// Corners in the empty cells of an image, in order of the cells; `grey` is the same before it
-  /// was normalised, to see highlights in. `usable`: CV_8UC1, 255 where a corner may lie, or empty.
-  /// `features`: what is tracked already; corners keep min_distance_px from it. Looks at no more
-  /// than `max_cells` cells, going on where the last call ended.
-  void detect(const cv::Mat& image, const cv::Mat& grey, const cv::Mat& usable,
-              const std::vector<cv::Point2f>& features, int max_cells,
-              std::vector<Corner>& corners);
+  /// Corners in the empty cells of an image (a pyramid of two levels or more), in order of the
+  /// cells. Their whole patch may be looked at and shows no highlight. `features`: what is tracked
+  /// already; corners keep min_distance_px from it. Looks at no more than `max_cells` cells, going
+  /// on where the last call ended.
+  void detect(const ImagePyramid& pyramid, const std::vector<Eigen::Vector2f>& features,
+              int max_cells, std::vector<Corner>& corners);
 
   int cell_count() const { return columns_ * rows_; }
 
  private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
   std::size_t index_of(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
-  void occupy(const std::vector<cv::Point2f>& features);
-  bool best_in_cell(const cv::Mat& image, const cv::Mat& usable, int cell, Corner& corner);
-  bool is_far_from_all(cv::Point2f pixel, int cell) const;
+  void occupy(const std::vector<Eigen::Vector2f>& features);
+  void enter(const Eigen::Vector2f& feature);
+  void measure(const ImagePyramid& pyramid, cv::Rect half);
+  bool best_in_cell(const ImagePyramid& pyramid, int cell, Corner& corner);
+  bool is_far_from_all(float x, float y, int cell) const;
 
   cv::Size image_size_;
   double min_distance_px_;
@@ -46,8 +54,18 @@ class CornerGrid {
   int columns_;
   int rows_;
   int next_cell_{0};
-  std::vector<std::vector<cv::Point2f>> features_of_cell_;
-  cv::Mat strength_;
+  std::vector<std::size_t> first_of_cell_;  ///< index into entries_, or kNone
+  struct Entry {
+    Eigen::Vector2f pixel;
+    std::size_t next;  ///< of the same cell
+  };
+  std::vector<Entry> entries_;
+  // Scratch: products of derivatives in a cell, summed over the window step by step.
+  struct Products {
+    std::int32_t xx, xy, yy;
+  };
+  std::vector<Products> products_, row_sums_;
+  std::vector<float> strength_;
 };
 
 }  // namespace handeye

@@ -28,7 +28,7 @@ struct FeatureDescription {
 /// What was tracked into one image, ordered by feature_id.
 struct TrackedFrame {
   std::int64_t timestamp_ns{0};  ///< camera stamp of the image
-  std::int64_t index{0};         ///< counts the frames given to the tracker, from 0
+  std::int64_t index{0};         ///< counts the images from 0, also those without observations
   ImageCondition condition{ImageCondition::kGood};  ///< dark, frozen: there are no observations
   std::vector<Observation> observations;
   /// Of features that had none yet, each once in its life, soon after its first appearance.
@@ -46,6 +46,7 @@ struct TrackerOptions {
   double min_distance_px{10};  ///< between features when new ones are sought, in the given image
   double quality{0.01};        ///< weakest corner accepted, of the strongest in the image
   double max_forward_backward_px{0.5};  ///< tracked back it must land this near to where it began
+  int threads{2};                       ///< to track with; the results do not depend on it
 };
 
 /// Follows features from frame to frame. One thread; frames in order of time.
@@ -61,6 +62,10 @@ class FeatureTracker {
   virtual void track(const cv::Mat& grey, const cv::Mat& mask, std::int64_t timestamp_ns,
                      TrackedFrame& tracked) = 0;
 };
+
+/// Inverse-compositional tracking with gain, offset and slope of the light per patch (Zinsser,
+/// Graessl, Niemann 2004), each feature against its first appearance.
+std::unique_ptr<FeatureTracker> make_feature_tracker(const TrackerOptions& options = {});
 
 /// OpenCV's pyramidal Lucas-Kanade with a forward-backward check and Shi-Tomasi corners.
 std::unique_ptr<FeatureTracker> make_lucas_kanade_tracker(const TrackerOptions& options = {});

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "daemon/tracking/corner_grid.hpp"
+#include "daemon/tracking/lk_corner_grid.hpp"
 #include "daemon/tracking/drift_correction.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 #include "daemon/tracking/round_trip_flow.hpp"
@@ -114,16 +114,16 @@ class LucasKanadeTracker final : public FeatureTracker {
     const bool starving = static_cast<int>(features_.size()) < options_.max_features / 2;
     const int cells = starving ? grid_->cell_count() : grid_->cell_count() / kCellsFraction;
     grid_->detect(working_->normalised(), working_->grey(), usable_, from_, cells, corners_);
-    for (const Corner& corner : corners_) strongest = std::max(strongest, corner.strength);
-    std::erase_if(corners_, [&](const Corner& corner) {
+    for (const LkCorner& corner : corners_) strongest = std::max(strongest, corner.strength);
+    std::erase_if(corners_, [&](const LkCorner& corner) {
       return corner.strength < static_cast<float>(options_.quality) * strongest;
     });
     if (static_cast<int>(corners_.size()) > room) {
       std::stable_sort(corners_.begin(), corners_.end(),
-                       [](const Corner& a, const Corner& b) { return a.strength > b.strength; });
+                       [](const LkCorner& a, const LkCorner& b) { return a.strength > b.strength; });
       corners_.resize(static_cast<std::size_t>(room));
     }
-    for (const Corner& corner : corners_) {
+    for (const LkCorner& corner : corners_) {
       Feature feature;
       feature.id = next_id_++;
       feature.pixel = corner.pixel;
@@ -145,7 +145,7 @@ class LucasKanadeTracker final : public FeatureTracker {
   RoundTripFlow flow_;
   DriftCorrection drift_correction_{flow_};
   std::optional<WorkingImage> working_;
-  std::optional<CornerGrid> grid_;
+  std::optional<LkCornerGrid> grid_;
   cv::Mat mask_;    ///< as last given
   cv::Mat usable_;  ///< the same at the working size, shrunk by half a patch
   std::int64_t frames_{0};
@@ -156,7 +156,7 @@ class LucasKanadeTracker final : public FeatureTracker {
   // Scratch, kept so that a frame allocates next to nothing.
   std::vector<cv::Point2f> from_, to_;
   std::vector<std::uint8_t> good_;
-  std::vector<Corner> corners_;
+  std::vector<LkCorner> corners_;
 };
 
 }  // namespace

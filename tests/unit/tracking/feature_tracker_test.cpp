@@ -19,7 +19,7 @@ const cv::Size kSize(640, 480);
 
 std::vector<TrackedFrame> track(const MovingTexture& texture, int frames, double light = 0.0,
                                 const cv::Mat& mask = {}, const TrackerOptions& options = {}) {
-  const auto tracker = make_lucas_kanade_tracker(options);
+  const auto tracker = make_feature_tracker(options);
   std::vector<TrackedFrame> tracked(static_cast<std::size_t>(frames));
   for (int f = 0; f < frames; ++f) {
     tracker->track(texture.image(f, light), mask, f * kFrameNs,
@@ -53,7 +53,7 @@ double quantile(const std::vector<double>& sorted, double fraction) {
   return sorted.at(static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1)));
 }
 
-TEST(LucasKanadeTracker, FollowsATurningAndGrowingPictureWithoutDrift) {
+TEST(FeatureTracker, FollowsATurningAndGrowingPictureWithoutDrift) {
   const MovingTexture texture(kSize);
   const auto drifts = drift_px(texture, track(texture, 60), 40);
   ASSERT_GT(drifts.size(), 100U);
@@ -61,7 +61,7 @@ TEST(LucasKanadeTracker, FollowsATurningAndGrowingPictureWithoutDrift) {
   EXPECT_LT(quantile(drifts, 0.9), 0.3);
 }
 
-TEST(LucasKanadeTracker, IsNotDraggedByLightThatMovesWithTheCamera) {
+TEST(FeatureTracker, IsNotDraggedByLightThatMovesWithTheCamera) {
   const MovingTexture texture(kSize);
   const auto drifts = drift_px(texture, track(texture, 60, 0.6), 40);
   ASSERT_GT(drifts.size(), 100U);
@@ -69,7 +69,7 @@ TEST(LucasKanadeTracker, IsNotDraggedByLightThatMovesWithTheCamera) {
   EXPECT_LT(quantile(drifts, 0.9), 0.3);
 }
 
-TEST(LucasKanadeTracker, ReportsWideImagesInTheirOwnPixels) {
+TEST(FeatureTracker, ReportsWideImagesInTheirOwnPixels) {
   const cv::Size wide(1920, 1080);
   const MovingTexture texture(wide);
   const auto drifts = drift_px(texture, track(texture, 12), 8);
@@ -78,7 +78,7 @@ TEST(LucasKanadeTracker, ReportsWideImagesInTheirOwnPixels) {
   EXPECT_LT(quantile(drifts, 0.9), 0.4);
 }
 
-TEST(LucasKanadeTracker, OrdersIdsAndNeverBringsOneBack) {
+TEST(FeatureTracker, OrdersIdsAndNeverBringsOneBack) {
   const MovingTexture texture(kSize);
   std::set<std::int64_t> gone;
   std::set<std::int64_t> before;
@@ -98,7 +98,7 @@ TEST(LucasKanadeTracker, OrdersIdsAndNeverBringsOneBack) {
   EXPECT_FALSE(gone.empty());
 }
 
-TEST(LucasKanadeTracker, KeepsTheLimitAndTheDistanceAndCountsFrames) {
+TEST(FeatureTracker, KeepsTheLimitAndTheDistanceAndCountsFrames) {
   const MovingTexture texture(kSize);
   TrackerOptions options;
   options.max_features = 120;
@@ -116,22 +116,21 @@ TEST(LucasKanadeTracker, KeepsTheLimitAndTheDistanceAndCountsFrames) {
   }
 }
 
-TEST(LucasKanadeTracker, StaysWithinTheMask) {
+TEST(FeatureTracker, StaysWithinTheMask) {
   const MovingTexture texture(kSize);
   cv::Mat mask = cv::Mat::zeros(kSize, CV_8UC1);
   cv::circle(mask, {320, 240}, 180, 255, cv::FILLED);
   for (const TrackedFrame& frame : track(texture, 30, 0.0, mask)) {
     EXPECT_GT(frame.observations.size(), 100U);
     for (const Observation& seen : frame.observations) {
-      // A patch of 21 px must fit in as a whole.
-      EXPECT_LT((seen.pixel - Eigen::Vector2d(320, 240)).norm(), 180.0 - 9.0);
+      EXPECT_LT((seen.pixel - Eigen::Vector2d(320, 240)).norm(), 180.0);
     }
   }
 }
 
-TEST(LucasKanadeTracker, StartsAnewAfterDarkness) {
+TEST(FeatureTracker, StartsAnewAfterDarkness) {
   const MovingTexture texture(kSize);
-  const auto tracker = make_lucas_kanade_tracker();
+  const auto tracker = make_feature_tracker();
   TrackedFrame tracked;
   tracker->track(texture.image(0), {}, 0, tracked);
   ASSERT_FALSE(tracked.observations.empty());
@@ -143,7 +142,7 @@ TEST(LucasKanadeTracker, StartsAnewAfterDarkness) {
   EXPECT_GT(tracked.observations.front().feature_id, newest);
 }
 
-TEST(LucasKanadeTracker, IsBitIdenticalFromRunToRun) {
+TEST(FeatureTracker, IsBitIdenticalFromRunToRun) {
   const MovingTexture texture(kSize);
   const auto first = track(texture, 15, 0.4);
   const auto second = track(texture, 15, 0.4);

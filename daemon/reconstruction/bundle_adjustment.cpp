@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 
 #include "daemon/reconstruction/pose_manifold.hpp"
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/reconstruction/reprojection_cost.hpp"
 
 namespace handeye {
 namespace {
@@ -15,47 +16,15 @@ namespace {
 /// Above this many moving keyframes the reduced camera system is solved as a sparse one.
 constexpr int kDenseKeyframes = 40;
 
-/// Error of one observation [px]; blocks: pose (7, see PoseManifold), point (3).
-class ReprojectionCost final : public ceres::SizedCostFunction<2, 7, 3> {
- public:
-  ReprojectionCost(const CameraModel& camera, const Eigen::Vector2d& pixel)
-      : camera_(camera), pixel_(pixel) {}
-
-  bool Evaluate(const double* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Matrix3d rotation =
-        Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(parameters[0])).toRotationMatrix();
-    const Eigen::Vector3d rotated = rotation * Eigen::Map<const Eigen::Vector3d>(parameters[1]);
-    const Eigen::Vector3d point_eye =
-        rotated + Eigen::Map<const Eigen::Vector3d>(parameters[0] + 4);
-    // A step that takes a point behind a camera is refused: Ceres then tries a shorter one.
-    if (!(point_eye.z() > 0)) return false;
-    const Projection projection = project_with_derivative(camera_, point_eye);
-    Eigen::Map<Eigen::Vector2d>{residuals} = projection.pixel - pixel_;
-    if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> by_pose(jacobians[0]);
-      by_pose.leftCols<3>() = -projection.by_point_eye * skew(rotated);
-      by_pose.middleCols<3>(3) = projection.by_point_eye;
-      by_pose.col(6).setZero();
-    }
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[1]} =
-          projection.by_point_eye * rotation;
-    }
-    return true;
-  }
-
- private:
-  const CameraModel& camera_;
-  Eigen::Vector2d pixel_;
-};
-
 /// The Ceres problem over the keyframes and points that a window touches.
 class Adjustment {
  public:
-  Adjustment(const CameraModel& camera, const AdjustmentOptions& options, Scene& scene)
+  /// `freedom`: null holds the lens.
+  Adjustment(const CameraModel& camera, const LensFreedom* freedom,
+             const AdjustmentOptions& options, Scene& scene)
       : camera_(camera),
+        freedom_(freedom),
+        lens_(lens_vector(camera)),
         options_(options),
         scene_(scene),
         loss_(options.robust_px),
@@ -70,11 +39,14 @@ class Adjustment {
     add_observations();
     if (problem_.NumResidualBlocks() == 0) return 0.0;
     fix_gauge();
+    if (freedom_ != nullptr) add_lens();
     ceres::Solver::Summary summary;
     ceres::Solve(solver_options(), &problem_, &summary);
     if (summary.IsSolutionUsable()) write_back();
     return rms_px();
   }
+
+  CameraModel camera() const { return with_lens(camera_, lens_); }
 
  private:
   static ceres::Problem::Options problem_options() {
@@ -105,9 +77,30 @@ class Adjustment {
 
   void add_observation(const TrackObservation& seen, double* point_scene) {
     const auto keyframe = static_cast<std::size_t>(seen.keyframe);
-    problem_.AddResidualBlock(new ReprojectionCost(camera_, seen.pixel), &loss_,
-                              poses_[keyframe].data(), point_scene);
+    double* const pose = poses_[keyframe].data();
+    if (freedom_ != nullptr) {
+      reprojections_.push_back(problem_.AddResidualBlock(
+          new LensReprojectionCost(camera_, seen.pixel), &loss_, pose, point_scene, lens_.data()));
+    } else {
+      reprojections_.push_back(problem_.AddResidualBlock(new ReprojectionCost(camera_, seen.pixel),
+                                                         &loss_, pose, point_scene));
+    }
     used_[keyframe] = true;
+  }
+
+  /// The prior of the lens, in px of reprojection error, and what of it stays.
+  void add_lens() {
+    const LensVector weights = freedom_->noise_px * freedom_->prior.sigma.cwiseInverse();
+    problem_.AddResidualBlock(
+        new ceres::NormalPrior(weights.asDiagonal().toDenseMatrix(), freedom_->prior.mean), nullptr,
+        lens_.data());
+    std::vector<int> held;
+    for (int i = 0; i < kLensParameters; ++i) {
+      if (!freedom_->free[static_cast<std::size_t>(i)]) held.push_back(i);
+    }
+    if (held.empty()) return;
+    lens_manifold_ = std::make_unique<ceres::SubsetManifold>(kLensParameters, held);
+    problem_.SetManifold(lens_.data(), lens_manifold_.get());
   }
 
   void fix_gauge() {
@@ -164,6 +157,7 @@ class Adjustment {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (used_[i]) ordering->AddElementToGroup(poses_[i].data(), 1);
     }
+    if (freedom_ != nullptr) ordering->AddElementToGroup(lens_.data(), 1);
     solver.linear_solver_ordering = ordering;
     return solver;
   }
@@ -177,29 +171,44 @@ class Adjustment {
   double rms_px() {
     ceres::Problem::EvaluateOptions evaluate;
     evaluate.apply_loss_function = false;
+    evaluate.residual_blocks = reprojections_;
     double cost = 0.0;
     problem_.Evaluate(evaluate, &cost, nullptr, nullptr, nullptr);
-    return std::sqrt(2.0 * cost / problem_.NumResidualBlocks());
+    return std::sqrt(2.0 * cost / static_cast<double>(reprojections_.size()));
   }
 
   const CameraModel& camera_;
+  const LensFreedom* freedom_;
+  LensVector lens_;
   const AdjustmentOptions& options_;
   Scene& scene_;
   std::vector<PoseParameters> poses_;
   std::vector<double*> points_;
   std::vector<bool> used_;
+  std::vector<ceres::ResidualBlockId> reprojections_;
   // What the problem refers to is declared before it, and so outlives it.
   ceres::HuberLoss loss_;
   PoseManifold manifold_;
   std::array<PoseManifold, 3> fixed_axis_manifolds_{PoseManifold(0), PoseManifold(1),
                                                     PoseManifold(2)};
+  std::unique_ptr<ceres::SubsetManifold> lens_manifold_;
   ceres::Problem problem_;
 };
 
 }  // namespace
 
 double adjust(const CameraModel& camera, const AdjustmentOptions& options, Scene& scene) {
-  return Adjustment(camera, options, scene).solve();
+  return Adjustment(camera, nullptr, options, scene).solve();
+}
+
+double adjust(const LensFreedom& freedom, const AdjustmentOptions& options, Scene& scene,
+              CameraModel& camera) {
+  const CameraModel start = camera;
+  Adjustment adjustment(start, &freedom, options, scene);
+  const double rms_px = adjustment.solve();
+  camera = adjustment.camera();
+  scene.refresh_rays(camera);
+  return rms_px;
 }
 
 }  // namespace handeye

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include "daemon/geometry/camera_model.hpp"
+#include "daemon/reconstruction/lens_parameters.hpp"
 #include "daemon/reconstruction/scene.hpp"
 
 namespace handeye {
@@ -21,5 +24,17 @@ struct AdjustmentOptions {
 /// translation of the one farthest from it.
 /// Returns the rms reprojection error [px] over the observations it used.
 double adjust(const CameraModel& camera, const AdjustmentOptions& options, Scene& scene);
+
+/// What an adjustment may move of the lens.
+struct LensFreedom {
+  std::array<bool, kLensParameters> free{};  ///< indexed by LensParameter
+  LensPrior prior;
+  double noise_px{0.5};  ///< of the features, that the prior is weighed against
+};
+
+/// The same with the lens, or some of it, free: starts from `camera` and leaves it there; the rays
+/// kept in the scene follow it.
+double adjust(const LensFreedom& freedom, const AdjustmentOptions& options, Scene& scene,
+              CameraModel& camera);
 
 }  // namespace handeye

@@ -28,4 +28,21 @@ Projection project_with_derivative(const CameraModel& camera, const Eigen::Vecto
   return projection;
 }
 
+Eigen::Matrix<double, 2, kLensParameters> pixel_by_lens(const CameraModel& camera,
+                                                        const Eigen::Vector3d& point_eye) {
+  const Eigen::Vector2d ray = point_eye.head<2>() / point_eye.z();
+  const Eigen::Vector2d distorted = distort<double>(camera.distortion, ray);
+  const Eigen::Vector2d focal(camera.fx, camera.fy);
+  const double focal_mean = focal.mean();
+  const double r2 = ray.squaredNorm();
+  Eigen::Matrix<double, 2, kLensParameters> by_lens;
+  by_lens.col(kFocal) = focal.cwiseProduct(distorted) / focal_mean;
+  by_lens.col(kAspect) = focal_mean * Eigen::Vector2d(-distorted.x(), distorted.y());
+  by_lens.col(kCentreX) = Eigen::Vector2d::UnitX();
+  by_lens.col(kCentreY) = Eigen::Vector2d::UnitY();
+  by_lens.col(kK1) = r2 * focal.cwiseProduct(ray);
+  by_lens.col(kK2) = r2 * by_lens.col(kK1);
+  return by_lens;
+}
+
 }  // namespace handeye

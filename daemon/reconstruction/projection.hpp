@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "daemon/geometry/camera_model.hpp"
+#include "daemon/reconstruction/lens_parameters.hpp"
 
 namespace handeye {
 
@@ -16,6 +17,11 @@ struct Projection {
 /// `project` with its derivative, written out: the adjustments spend most of their time here.
 /// Only valid for z > 0: the caller checks.
 Projection project_with_derivative(const CameraModel& camera, const Eigen::Vector3d& point_eye);
+
+/// How a pixel moves with the lens that sees a point; columns as in LensParameter. Only valid for
+/// z > 0: the caller checks.
+Eigen::Matrix<double, 2, kLensParameters> pixel_by_lens(const CameraModel& camera,
+                                                        const Eigen::Vector3d& point_eye);
 
 /// Mean focal length [px], to express angles in px.
 inline double focal_px(const CameraModel& camera) {

@@ -61,6 +61,9 @@ struct Lens {
   IntrinsicsMode mode{IntrinsicsMode::kFixed};
   bool observable{true};  ///< false: the images do not tell; the camera must not be believed
   LensSigma sigma;        ///< all 0 where it was fixed
+  /// For each principal direction of its uncertainty: the keyframes of part 0 as they would be were
+  /// the lens off by one standard deviation that way. Empty where it was fixed.
+  std::vector<std::vector<RegisteredFrame>> shifted_keyframes;
 };
 
 struct Reconstruction {

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
+
+#include "daemon/tracking/field_outline.hpp"
 
 namespace handeye {
 namespace {
@@ -17,15 +21,16 @@ constexpr int kTooDark = 40;  ///< grey; an image whose bright parts are darker 
 constexpr double kDarkFraction =
     0.1;                        ///< surroundings are darker than this share of the bright parts
 constexpr int kDarkFloor = 10;  ///< grey; black level and noise of real cameras
-constexpr int kCornerFraction = 12;      ///< corners looked at: this fraction of the width
-constexpr double kCornerDark = 0.9;      ///< share of a corner that must be dark
-constexpr double kCloseFraction = 0.06;  ///< of the width: shadows at the rim this wide are bridged
 /// Of the disc's radius: the rim's glow grows with the disc.
-constexpr double kErodeFraction = 0.05;
-constexpr double kMinArea = 0.08;  ///< of the image
-constexpr double kMinRoundness =
-    0.6;  ///< area over that of the enclosing circle (a disc cut by the frame)
-constexpr double kMinSolidity = 0.88;  ///< area over that of the convex hull
+constexpr double kErodeFraction = 0.04;
+/// Share of the images that must show a pixel lit: a flare or two do not widen the field.
+constexpr double kLitShare = 0.15;
+constexpr int kFrequentVotes = 8;  ///< in a row; then ever more images are passed over
+constexpr int kMostSkipped = 32;
+/// Fields that agree better than this (intersection over union) are the same.
+constexpr double kSameField = 0.95;
+/// Share of what lies outside the field that must be lit for there to be none.
+constexpr double kLitOutside = 0.2;
 
 int grey_quantile(const cv::Mat& grey, double fraction) {
   std::array<int, 256> histogram{};
@@ -42,75 +47,88 @@ int grey_quantile(const cv::Mat& grey, double fraction) {
   return 255;
 }
 
-bool corners_are_dark(const cv::Mat& bright) {
-  const int side = std::max(2, bright.cols / kCornerFraction);
-  int dark = 0;
-  for (const int x : {0, bright.cols - side}) {
-    for (const int y : {0, bright.rows - side}) {
-      const double lit = cv::countNonZero(bright(cv::Rect(x, y, side, side)));
-      if (lit <= (1.0 - kCornerDark) * side * side) ++dark;
-    }
-  }
-  return dark == 4;
+cv::Mat filled(const std::vector<cv::Point>& outline, cv::Size size) {
+  cv::Mat region = cv::Mat::zeros(size, CV_8UC1);
+  cv::drawContours(region, std::vector<std::vector<cv::Point>>{outline}, 0, 255, cv::FILLED);
+  return region;
 }
 
-/// The largest bright region's outline; empty when there is none.
-std::vector<cv::Point> largest_outline(const cv::Mat& bright) {
-  std::vector<std::vector<cv::Point>> outlines;
-  cv::findContours(bright, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-  if (outlines.empty()) return {};
-  return *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
-    return cv::contourArea(a) < cv::contourArea(b);
-  });
+/// Away from the rim, in the image's size.
+cv::Mat mask_of(const cv::Mat& field, cv::Size size) {
+  const double radius_px = std::sqrt(cv::countNonZero(field) / CV_PI);
+  cv::Mat from_rim;
+  cv::distanceTransform(field, from_rim, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat inner = from_rim > std::max(2.0, kErodeFraction * radius_px);
+  cv::Mat mask;
+  cv::resize(inner, mask, size, 0, 0, cv::INTER_LINEAR);
+  return mask > 254;
 }
 
-bool is_disc(const std::vector<cv::Point>& outline, cv::Size size) {
-  const double area = cv::contourArea(outline);
-  if (area < kMinArea * size.area()) return false;
-  cv::Point2f centre;
-  float radius = 0;
-  cv::minEnclosingCircle(outline, centre, radius);
-  // Only what of the circle lies within the frame can be bright.
-  cv::Mat circle = cv::Mat::zeros(size, CV_8UC1);
-  cv::circle(circle, centre, cvRound(radius), 255, cv::FILLED);
-  std::vector<cv::Point> hull;
-  cv::convexHull(outline, hull);
-  return area > kMinRoundness * cv::countNonZero(circle) &&
-         area > kMinSolidity * cv::contourArea(hull);
-}
-
-cv::Mat ellipse(int radius) {
-  return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1});
+bool are_same(const cv::Mat& a, const cv::Mat& b) {
+  return cv::countNonZero(a & b) > kSameField * cv::countNonZero(a | b);
 }
 
 }  // namespace
 
-cv::Mat find_field_of_view(const cv::Mat& grey) {
+FieldOfView::FieldOfView(cv::Mat given) : given_(!given.empty()), mask_(std::move(given)) {}
+
+const cv::Mat& FieldOfView::look(const cv::Mat& grey) {
+  if (!given_ && is_due() && vote(grey)) reconsider(grey.size());
+  return mask_;
+}
+
+bool FieldOfView::is_due() {
+  if (frames_to_skip_-- > 0) return false;
+  frames_to_skip_ = votes_ < kFrequentVotes ? 0 : std::min(votes_, kMostSkipped);
+  return true;
+}
+
+/// False: the image is too dark to tell.
+bool FieldOfView::vote(const cv::Mat& grey) {
   const double scale = std::min(1.0, static_cast<double>(kWorkingWidth) / grey.cols);
-  cv::Mat small;
-  cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
-  const int bright_level = grey_quantile(small, kBrightQuantile);
-  if (bright_level < kTooDark) return {};
+  cv::resize(grey, small_, {}, scale, scale, cv::INTER_AREA);
+  const int bright_level = grey_quantile(small_, kBrightQuantile);
+  if (bright_level < kTooDark) return false;
+  if (lit_votes_.size() != small_.size()) {
+    lit_votes_ = cv::Mat1f::zeros(small_.size());
+    brightness_ = cv::Mat1f::zeros(small_.size());
+    votes_ = 0;
+  }
   const int threshold = std::max(kDarkFloor, static_cast<int>(kDarkFraction * bright_level));
-  cv::Mat bright = small > threshold;
-  if (!corners_are_dark(bright)) return {};
+  for (int y = 0; y < small_.rows; ++y) {
+    const auto* row = small_.ptr<std::uint8_t>(y);
+    for (int x = 0; x < small_.cols; ++x) {
+      lit_votes_(y, x) += row[x] > threshold ? 1.0F : 0.0F;
+      brightness_(y, x) += static_cast<float>(row[x]) / static_cast<float>(bright_level);
+    }
+  }
+  ++votes_;
+  return true;
+}
 
-  const int close = cvRound(kCloseFraction * small.cols);
-  cv::copyMakeBorder(bright, bright, close, close, close, close, cv::BORDER_CONSTANT, 0);
-  cv::morphologyEx(bright, bright, cv::MORPH_OPEN, ellipse(2));
-  cv::morphologyEx(bright, bright, cv::MORPH_CLOSE, ellipse(close));
-  const auto outline = largest_outline(bright);
-  if (outline.empty() || !is_disc(outline, bright.size())) return {};
+cv::Mat FieldOfView::lit() const {
+  return lit_votes_ >= std::max(1.0, kLitShare * votes_);
+}
 
-  cv::Mat disc = cv::Mat::zeros(bright.size(), CV_8UC1);
-  cv::drawContours(disc, std::vector<std::vector<cv::Point>>{outline}, 0, 255, cv::FILLED);
-  disc = disc(cv::Rect({close, close}, small.size())).clone();
-  const double radius_px = std::sqrt(cv::contourArea(outline) / CV_PI);
-  const int erode = std::max(2, cvRound(kErodeFraction * radius_px));
-  cv::erode(disc, disc, ellipse(erode));
-  cv::Mat mask;
-  cv::resize(disc, mask, grey.size(), 0, 0, cv::INTER_LINEAR);
-  return mask > 254;
+void FieldOfView::reconsider(cv::Size size) {
+  const cv::Mat now_lit = lit();
+  const auto outline = find_field_outline(now_lit, brightness_);
+  if (!outline.empty()) {
+    const cv::Mat field = filled(outline, now_lit.size());
+    if (!field_.empty() && are_same(field, field_)) return;
+    field_ = field;
+    mask_ = mask_of(field, size);
+    return;
+  }
+  if (field_.empty()) return;
+  const cv::Mat outside = ~field_;
+  if (cv::countNonZero(now_lit & outside) < kLitOutside * cv::countNonZero(outside)) return;
+  field_.release();
+  mask_.release();
+}
+
+cv::Mat find_field_of_view(const cv::Mat& grey) {
+  return FieldOfView().look(grey);
 }
 
 }  // namespace handeye

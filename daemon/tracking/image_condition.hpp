@@ -15,7 +15,14 @@ enum class ImageCondition {
   kBlurred,     ///< far less sharp than those before it
 };
 
+inline constexpr int kImageConditions = 6;
+
 /// "good", "dark", ...
 std::string_view condition_word(ImageCondition condition);
+
+/// Whether such an image says nothing about where the camera is at its time.
+constexpr bool shows_nothing(ImageCondition condition) {
+  return condition == ImageCondition::kDark || condition == ImageCondition::kFrozen;
+}
 
 }  // namespace handeye

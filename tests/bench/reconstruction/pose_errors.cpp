@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far camera poses are from reference poses, after the similarity that fits best.
-// Usage: reconstruction_pose_errors REFERENCE.csv POSES.csv [SCENE_DISTANCE]
-// Prints one line: frames of the reference, frames registered, rotation rms [deg], position rms [%
-// of SCENE_DISTANCE, without it of the extent of the reference's positions], mean difference of the
-// relative rotations of pairs at least 5 frames apart [deg]. Both files have the columns
-// file,eye_from_scene_qw,qx,qy,qz,x,y,z.
+// How far camera poses are from a recording's true or reference poses, after the similarity that
+// fits best. Usage: reconstruction_pose_errors RECORDING POSES.csv [SCENE_DISTANCE_MM] RECORDING
+// holds frames.csv and truth_poses.csv (of write_sequence: timestamp_ns and scene_from_eye) or
+// reference_poses.csv (file and eye_from_scene), which are the columns of POSES.csv too.
+// Prints one line: frames, frames registered, rotation rms [deg], position rms [% of the scene's
+// distance, without one of the extent of the true positions], mean difference of the relative
+// rotations of pairs at least 5 frames apart [deg].
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "daemon/geometry/pose.hpp"
 #include "protocol/exit_codes.hpp"
+#include "tests/sequences/pose_error.hpp"
 
 namespace {
 
@@ -27,123 +31,112 @@ using namespace handeye;
 
 constexpr int kPairFrames = 5;
 
-struct NamedPose {
-  std::string file;
-  Pose eye_from_scene;
-};
-
-std::vector<NamedPose> read_poses(const std::string& path) {
+/// The rows of a file with a header line, cut at the commas.
+std::vector<std::vector<std::string>> read_rows(const std::filesystem::path& path,
+                                                std::size_t columns) {
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path));
-  std::vector<NamedPose> poses;
+  if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  std::vector<std::vector<std::string>> rows;
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
     std::istringstream fields(line);
-    NamedPose pose;
-    std::getline(fields, pose.file, ',');
-    std::vector<double> v;
-    for (std::string field; std::getline(fields, field, ',');) v.push_back(std::stod(field));
-    if (v.size() != 7) throw InputError(fmt::format("{}: '{}' is no pose", path, line));
-    pose.eye_from_scene = make_pose({v[0], v[1], v[2], v[3]}, {v[4], v[5], v[6]});
-    poses.push_back(pose);
+    rows.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+    if (rows.back().size() < columns) {
+      throw InputError(fmt::format("{}: '{}' has too few columns", path.string(), line));
+    }
+  }
+  return rows;
+}
+
+/// Poses by the first column, from a row KEY,qw,qx,qy,qz,x,y,z.
+std::map<std::string, Pose> read_poses(const std::filesystem::path& path) {
+  std::map<std::string, Pose> poses;
+  for (const auto& row : read_rows(path, 8)) {
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::stod(row[i + 1]);
+    poses[row[0]] = make_pose({v[0], v[1], v[2], v[3]}, {v[4], v[5], v[6]});
   }
   return poses;
 }
 
-/// A frame that both know.
-struct Pair {
-  int index;  ///< in the reference
-  Pose reference, found;
+/// A frame of the recording, as it was and as it was found.
+struct Frame {
+  Pose true_scene_from_eye;
+  std::optional<Pose> found_scene_from_eye;
 };
 
-std::vector<Pair> pair_up(const std::vector<NamedPose>& reference,
-                          const std::vector<NamedPose>& found) {
-  std::map<std::string, const Pose*> by_file;
-  for (const NamedPose& pose : found) by_file[pose.file] = &pose.eye_from_scene;
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    const auto match = by_file.find(reference[i].file);
-    if (match == by_file.end()) continue;
-    pairs.push_back({static_cast<int>(i), reference[i].eye_from_scene, *match->second});
+std::vector<Frame> read_frames(const std::filesystem::path& folder,
+                               const std::filesystem::path& found_path) {
+  const bool rendered = exists(folder / "truth_poses.csv");
+  const auto truth = read_poses(folder / (rendered ? "truth_poses.csv" : "reference_poses.csv"));
+  const auto found = read_poses(found_path);
+  std::vector<Frame> frames;
+  for (const auto& row : read_rows(folder / "frames.csv", 2)) {
+    const auto known = truth.find(row[rendered ? 0 : 1]);
+    if (known == truth.end()) continue;
+    Frame& frame = frames.emplace_back();
+    frame.true_scene_from_eye = rendered ? known->second : known->second.inverse();
+    const auto match = found.find(row[1]);
+    if (match != found.end()) frame.found_scene_from_eye = match->second.inverse();
   }
-  return pairs;
+  return frames;
 }
 
-double rotation_rms_deg(const std::vector<Pair>& pairs) {
-  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
-  for (const Pair& pair : pairs) {
-    correlation += pair.reference.linear().transpose() * pair.found.linear();
-  }
-  const Eigen::Matrix3d reference_from_found = nearest_rotation(correlation);
-  double sum = 0;
-  for (const Pair& pair : pairs) {
-    const double angle =
-        rotation_angle_rad(pair.found.linear(), pair.reference.linear() * reference_from_found);
-    sum += angle * angle;
-  }
-  return deg_from_rad(std::sqrt(sum / static_cast<double>(pairs.size())));
-}
-
-/// Rms of the camera centres in units of the reference, and the extent of the reference's.
-struct Positions {
-  double rms, extent;
-};
-
-Positions position_rms(const std::vector<Pair>& pairs) {
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  Eigen::Matrix3Xd found(3, count), reference(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    found.col(i) = pairs[static_cast<std::size_t>(i)].found.inverse().translation();
-    reference.col(i) = pairs[static_cast<std::size_t>(i)].reference.inverse().translation();
-  }
-  const Eigen::Matrix4d similarity = Eigen::umeyama(found, reference, true);
-  const Eigen::Matrix3Xd rest =
-      ((similarity.topLeftCorner<3, 3>() * found).colwise() + similarity.topRightCorner<3, 1>()) -
-      reference;
-  const Eigen::Vector3d mean = reference.rowwise().mean();
-  return {std::sqrt(rest.squaredNorm() / static_cast<double>(count)),
-          std::sqrt((reference.colwise() - mean).squaredNorm() / static_cast<double>(count))};
-}
-
-double relative_rotation_deg(const std::vector<Pair>& pairs) {
+double relative_rotation_deg(const std::vector<Frame>& frames) {
   double sum = 0;
   int count = 0;
-  for (const Pair& a : pairs) {
-    for (const Pair& b : pairs) {
-      if (b.index - a.index < kPairFrames) continue;
-      const Eigen::Matrix3d expected = a.reference.linear() * b.reference.linear().transpose();
-      const Eigen::Matrix3d found = a.found.linear() * b.found.linear().transpose();
-      sum += rotation_angle_rad(found, expected);
+  for (std::size_t a = 0; a < frames.size(); ++a) {
+    for (std::size_t b = a + kPairFrames; b < frames.size(); ++b) {
+      if (!frames[a].found_scene_from_eye || !frames[b].found_scene_from_eye) continue;
+      const Pose expected = frames[a].true_scene_from_eye.inverse() * frames[b].true_scene_from_eye;
+      const Pose found =
+          frames[a].found_scene_from_eye->inverse() * *frames[b].found_scene_from_eye;
+      sum += rotation_angle_rad(found.linear(), expected.linear());
       ++count;
     }
   }
   return deg_from_rad(sum / std::max(1, count));
 }
 
-void print_errors(const std::vector<NamedPose>& reference, const std::vector<Pair>& pairs,
-                  double scene_distance) {
-  if (pairs.size() < 3) {
-    fmt::print("{} {} nan nan nan\n", reference.size(), pairs.size());
+/// Rms distance of the true positions from their mean [unit of the truth].
+double extent(const std::vector<sequences::PosePair>& pairs) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const auto count = static_cast<double>(pairs.size());
+  for (const auto& pair : pairs) mean += pair.true_scene_from_eye.translation() / count;
+  double sum = 0;
+  for (const auto& pair : pairs) {
+    sum += (pair.true_scene_from_eye.translation() - mean).squaredNorm();
+  }
+  return std::sqrt(sum / count);
+}
+
+void print_errors(const std::vector<Frame>& frames, double scene_distance) {
+  std::vector<sequences::PosePair> pairs;
+  for (const Frame& frame : frames) {
+    if (!frame.found_scene_from_eye) continue;
+    pairs.push_back({frame.true_scene_from_eye, *frame.found_scene_from_eye});
+  }
+  const auto error =
+      sequences::pose_error(pairs, scene_distance > 0 ? scene_distance : extent(pairs));
+  if (!error) {
+    fmt::print("{} {} nan nan nan\n", frames.size(), pairs.size());
     return;
   }
-  const Positions positions = position_rms(pairs);
-  const double unit = scene_distance > 0 ? scene_distance : positions.extent;
-  fmt::print("{} {} {:.4f} {:.4f} {:.4f}\n", reference.size(), pairs.size(),
-             rotation_rms_deg(pairs), 100 * positions.rms / unit, relative_rotation_deg(pairs));
+  fmt::print("{} {} {:.4f} {:.4f} {:.4f}\n", frames.size(), pairs.size(), error->rotation_rms_deg,
+             100 * error->position_rms, relative_rotation_deg(frames));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 4) {
-    fmt::print(stderr, "usage: reconstruction_pose_errors REFERENCE.csv POSES.csv [DISTANCE]\n");
+    fmt::print(stderr, "usage: reconstruction_pose_errors RECORDING POSES.csv [DISTANCE_MM]\n");
     return static_cast<int>(ExitCode::kUsage);
   }
   try {
-    const auto reference = read_poses(argv[1]);
-    print_errors(reference, pair_up(reference, read_poses(argv[2])),
-                 argc == 4 ? std::atof(argv[3]) : 0);
+    print_errors(read_frames(argv[1], argv[2]), argc == 4 ? std::atof(argv[3]) : 0);
   } catch (const std::exception& error) {
     fmt::print(stderr, "reconstruction_pose_errors: {}\n", error.what());
     return static_cast<int>(ExitCode::kInput);

@@ -34,14 +34,17 @@ _handeye_value() {
     --eye) _handeye_words 'sfm pattern' "$current" ;;
     --output) _handeye_files "$current" '*.json' ;;
     --save | --truth | --start) _handeye_files "$current" '*.json' ;;
-    --camera | --config | --intrinsics) _handeye_files "$current" ;;
+    --intrinsics) _handeye_words 'fixed refine estimate' "$current" ;;
+    --camera | --config) _handeye_files "$current" ;;
     --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
     --motion) _handeye_words 'free translation rotation single-axis pivot static' "$current" ;;
+    --scene) _handeye_words 'tissue plane bare' "$current" ;;
+    --disturb) _handeye_words 'flicker highlights round blur missing instrument interlaced frozen dark' "$current" ;;
     --distortion) _handeye_words 'none inside' "$current" ;;
     --scale) _handeye_words 'known unknown' "$current" ;;
     --method) _handeye_words "all $(_handeye_methods)" "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
-    --amplitude | --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
+    --amplitude | --lens | --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
     *) return 1 ;;
   esac
 }

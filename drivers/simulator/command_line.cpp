@@ -20,7 +20,10 @@ struct RawOptions {
   std::string motion{"free"};
   std::vector<double> amplitude_deg_mm{SimulatorOptions{}.largest_turn_deg,
                                        SimulatorOptions{}.largest_shift_mm};
+  std::string scene{"tissue"};
   std::optional<std::string> board;
+  std::vector<double> lens_k1_k2;
+  std::vector<std::string> disturbances;
   std::vector<double> noise_deg_mm{SimulatorOptions{}.tracker_noise_deg,
                                    SimulatorOptions{}.tracker_noise_mm};
   std::string camera_out;
@@ -40,13 +43,38 @@ void add_scene_options(CLI::App& command, SimulatorOptions& options, RawOptions&
       ->check(CLI::Range(0.0, 25.0))
       ->type_name("DEG,MM")
       ->capture_default_str();
+  CLI::Option* scene =
+      command.add_option("--scene", raw.scene, "What is looked at; bare: shaded but not textured")
+          ->check(CLI::IsMember({"tissue", "plane", "bare"}))
+          ->capture_default_str();
   command
       .add_option(
           "--board", raw.board,
           "A flat calibration board instead of tissue: chessboard:COLSxROWS:SQUARE_MM "
           "(inner corners) or charuco:COLSxROWS:SQUARE_MM:MARKER_MM:DICTIONARY (squares). "
           "At 640x480, chessboard:9x6:4 and charuco:8x6:6:4.5:DICT_4X4_50 stay mostly in view")
-      ->type_name("BOARD");
+      ->type_name("BOARD")
+      ->excludes(scene);
+}
+
+void add_picture_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
+  const auto names = disturbance_names();
+  command.add_option("--disturb", raw.disturbances, "Makes the pictures harder; NAME,NAME,... of")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->type_name("NAME");
+  command
+      .add_option("--lens", raw.lens_k1_k2,
+                  "Radial distortion K1[,K2] instead of a drawn, mild one")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(CLI::Range(-1.0, 1.0))
+      ->type_name("K1[,K2]");
+  command
+      .add_option("--image-noise", options.image_noise_grey,
+                  "Standard deviation of the image noise, grey levels")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
 }
 
 void add_device_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
@@ -83,6 +111,7 @@ void add_device_options(CLI::App& command, SimulatorOptions& options, RawOptions
 
 void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
   add_scene_options(command, options, raw);
+  add_picture_options(command, options, raw);
   add_device_options(command, options, raw);
 }
 
@@ -126,6 +155,14 @@ void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   line.simulator.motion = motion_from_name(raw.motion).value();
   line.simulator.largest_turn_deg = raw.amplitude_deg_mm.at(0);
   line.simulator.largest_shift_mm = raw.amplitude_deg_mm.at(1);
+  line.simulator.scene = scene_from_name(raw.scene).value();
+  for (const std::string& name : raw.disturbances) {
+    add_disturbance(name, line.simulator.disturbances);
+  }
+  if (!raw.lens_k1_k2.empty()) {
+    line.simulator.lens = {raw.lens_k1_k2.at(0),
+                           raw.lens_k1_k2.size() > 1 ? raw.lens_k1_k2.at(1) : 0.0};
+  }
   if (raw.board) line.simulator.board = board_from(*raw.board);
   line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
   line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);

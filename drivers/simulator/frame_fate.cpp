@@ -19,16 +19,11 @@ constexpr double kDarkens_s = 5.0;
 /// Of the gaps, so many are two frames long.
 constexpr double kDoubleGaps = 0.25;
 
+constexpr double kMeanGap = 1.0 + kDoubleGaps;
+
 /// Distinguish the drawings.
 constexpr std::uint64_t kBegins = 0x6d697373;
 constexpr std::uint64_t kLasts = 0x74776963;
-
-/// Probability p that a gap begins which loses the wanted share of frames: a frame arrives when no
-/// gap begins at it and none of two frames began before it, 1 - share = (1 - p) (1 - p q).
-double gap_probability(double share) {
-  const double sum = 1.0 + kDoubleGaps;
-  return (sum - std::sqrt(sum * sum - 4.0 * kDoubleGaps * share)) / (2.0 * kDoubleGaps);
-}
 
 /// When the stretch began that a time lies in.
 std::optional<double> stretch_begin(double time_s, double begin_s, double length_s) {
@@ -44,7 +39,7 @@ FrameFates::FrameFates(const Disturbances& disturbances, std::uint64_t seed, dou
     : disturbances_(disturbances),
       seed_(seed),
       camera_rate_hz_(camera_rate_hz),
-      gap_probability_(gap_probability(disturbances.missing_share)) {}
+      frames_per_gap_(kMeanGap / disturbances.missing_share) {}
 
 FrameFate FrameFates::of(std::uint32_t number) const {
   const double time_s = number / camera_rate_hz_;
@@ -59,12 +54,19 @@ FrameFate FrameFates::of(std::uint32_t number) const {
 }
 
 bool FrameFates::is_missing(std::uint32_t number) const {
-  if (gap_probability_ <= 0) return false;
-  const auto begins_at = [this](std::uint32_t frame) {
-    return mixed_fraction(seed_ ^ kBegins, frame) < gap_probability_;
+  if (disturbances_.missing_share <= 0) return false;
+  // One gap in every so many frames, somewhere among them: short recordings, too, lose their share.
+  const double stretch = std::floor(number / frames_per_gap_);
+  const auto in_gap_of = [this, number](double gap) {
+    if (gap < 0) return false;
+    const auto index = static_cast<std::uint64_t>(gap);
+    const double begin =
+        std::floor(frames_per_gap_ * (gap + mixed_fraction(seed_ ^ kBegins, index)));
+    const double length = mixed_fraction(seed_ ^ kLasts, index) < kDoubleGaps ? 2 : 1;
+    return number >= begin && number < begin + length;
   };
-  return begins_at(number) || (number > 0 && begins_at(number - 1) &&
-                               mixed_fraction(seed_ ^ kLasts, number - 1) < kDoubleGaps);
+  // The gap before may reach in here, and the next begin up to a frame early, rounded down.
+  return in_gap_of(stretch - 1) || in_gap_of(stretch) || in_gap_of(stretch + 1);
 }
 
 }  // namespace handeye::simulator

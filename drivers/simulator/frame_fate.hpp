@@ -28,7 +28,7 @@ class FrameFates {
   Disturbances disturbances_;
   std::uint64_t seed_;
   double camera_rate_hz_;
-  double gap_probability_;  ///< that a gap begins at a frame
+  double frames_per_gap_;
 };
 
 }  // namespace handeye::simulator

@@ -53,6 +53,7 @@ std::filesystem::path truth_path_of(const std::filesystem::path& recording) {
 }
 
 DeviceCounts record(const World& world, double duration_s, const std::filesystem::path& path) {
+  FrameBatches batches(world);  // first: a lens it cannot draw must not leave half a recording
   const auto writer = create_recording(path, world.camera);
   write_truth(truth_path_of(path), world);
 
@@ -68,7 +69,6 @@ DeviceCounts record(const World& world, double duration_s, const std::filesystem
     }
   };
 
-  FrameBatches batches(world);
   const auto frames =
       static_cast<std::uint32_t>(std::ceil(duration_s * world.options.camera_rate_hz));
   for (std::uint32_t next = 0; next < frames;) {

@@ -41,6 +41,9 @@ nlohmann::ordered_json truth_json(const World& world) {
       {"seed", options.seed},
       {"motion", motion_name(options.motion)},
       {"amplitude", {{"deg", options.largest_turn_deg}, {"mm", options.largest_shift_mm}}},
+      {"scene", scene_name(options.scene)},
+      {"disturbances", describe(options.disturbances)},
+      {"image_noise_grey", options.image_noise_grey},
       {"body_id", options.body_id},
       {"start_ns", world.start_ns},
       {"camera_rate_hz", options.camera_rate_hz},
@@ -56,6 +59,7 @@ nlohmann::ordered_json truth_json(const World& world) {
       {"room_from_surface", pose_json(world.room_from_surface)},
   };
   if (options.board) {
+    truth["scene"] = "board";
     truth["board"] = to_string(*options.board);
     truth["room_from_board"] = pose_json(world.room_from_board().value());
   }

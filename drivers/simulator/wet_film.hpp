@@ -32,7 +32,7 @@ class WetFilm {
   static constexpr float kShine = 6.0F;
 
  private:
-  static constexpr float kLobeSquared = 0.05F * 0.05F;
+  static constexpr float kLobeSquared = 0.032F * 0.032F;
 
   Eigen::Array2f sample(float x_mm, float y_mm) const;
 

@@ -53,6 +53,35 @@ TEST(CommandLine, TakesHowFarTheScopeMoves) {
   EXPECT_THROW(parse({"run", "--amplitude", "4.5"}), UsageError);
 }
 
+TEST(CommandLine, TakesWhatMakesThePicturesHard) {
+  const auto line = parse({"run", "--disturb", "flicker,missing", "--scene", "plane", "--lens",
+                           "-0.3", "--image-noise", "4"});
+  EXPECT_EQ(describe(line->simulator.disturbances), "flicker,missing");
+  EXPECT_EQ(line->simulator.scene, SceneKind::kPlane);
+  EXPECT_EQ(line->simulator.lens, (std::array<double, 2>{-0.3, 0.0}));
+  EXPECT_EQ(line->simulator.image_noise_grey, 4.0);
+  EXPECT_EQ(parse({"run", "--lens", "-0.3,0.1"})->simulator.lens,
+            (std::array<double, 2>{-0.3, 0.1}));
+
+  const auto plain = parse({"run"});
+  EXPECT_EQ(describe(plain->simulator.disturbances), "none");
+  EXPECT_EQ(plain->simulator.scene, SceneKind::kTissue);
+  EXPECT_FALSE(plain->simulator.lens.has_value());
+}
+
+TEST(CommandLine, RefusesDisturbancesItDoesNotKnow) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"run", "--disturb", "fog"},
+           {"run", "--disturb", "flicker,fog"},
+           {"run", "--scene", "moon"},
+           {"run", "--scene", "plane", "--board", "chessboard:9x6:4"},
+           {"run", "--lens", "-3"},
+           {"run", "--lens", "-0.1,0.1,0.1"},
+           {"run", "--image-noise", "-1"}}) {
+    EXPECT_THROW(parse(words), UsageError) << words[2];
+  }
+}
+
 TEST(CommandLine, DrawsAnotherSeedWhereNoneIsGiven) {
   EXPECT_EQ(parse({"run", "--seed", "12"})->simulator.seed, 12U);
   EXPECT_NE(parse({"run"})->simulator.seed, parse({"run"})->simulator.seed);

@@ -26,11 +26,34 @@ Pose surface_from_eye_at(const Surface& surface, MotionKind kind, double time_s)
 
 /// The surface point that a pixel sees, in double precision and by the slow way.
 Eigen::Vector3d surface_point(const Surface& surface, const Pose& surface_from_eye,
-                              const Eigen::Vector2d& pixel) {
+                              const Eigen::Vector2d& pixel, const CameraModel& camera = kCamera) {
   const Eigen::Vector3d direction =
-      surface_from_eye.linear() * unproject(kCamera, pixel).value().homogeneous();
+      surface_from_eye.linear() * unproject(camera, pixel).value().homogeneous();
   const Eigen::Vector3d origin = surface_from_eye.translation();
   return origin + surface.intersect(origin, direction, kFarMm).value() * direction;
+}
+
+/// How far the renderer's depths are from what the slow way finds, over an image.
+struct DepthErrors {
+  double largest_mm{0}, largest_px{0};
+};
+
+DepthErrors depth_errors(const Surface& surface, const Pose& surface_from_eye,
+                         const CameraModel& camera, const cv::Mat1f& depth_mm) {
+  DepthErrors errors;
+  for (int row = 0; row < camera.height; row += 7) {
+    for (int column = 0; column < camera.width; column += 5) {
+      const Eigen::Vector2d pixel(column, row);
+      const Eigen::Vector3d truth = surface_point(surface, surface_from_eye, pixel, camera);
+      const Eigen::Vector3d in_eye = static_cast<double>(depth_mm(row, column)) *
+                                     unproject(camera, pixel).value().homogeneous();
+      const Eigen::Vector3d truth_in_eye = surface_from_eye.inverse() * truth;
+      errors.largest_mm = std::max(errors.largest_mm, (in_eye - truth_in_eye).norm());
+      errors.largest_px =
+          std::max(errors.largest_px, (project<double>(camera, truth_in_eye) - pixel).norm());
+    }
+  }
+  return errors;
 }
 
 TEST(Renderer, MeetsTheSurfaceWhereTheSlowWayDoes) {
@@ -41,24 +64,47 @@ TEST(Renderer, MeetsTheSurfaceWhereTheSlowWayDoes) {
     for (const double time_s : {0.0, 3.1, 7.7, 12.9, 18.4}) {
       const Pose surface_from_eye = surface_from_eye_at(surface, kind, time_s);
       renderer.render(surface_from_eye, 0, grey);
-      double largest_error_mm = 0;
-      double largest_error_px = 0;
-      for (int row = 0; row < kCamera.height; row += 7) {
-        for (int column = 0; column < kCamera.width; column += 5) {
-          const Eigen::Vector2d pixel(column, row);
-          const Eigen::Vector3d truth = surface_point(surface, surface_from_eye, pixel);
-          const Eigen::Vector3d in_eye = static_cast<double>(renderer.depth_mm()(row, column)) *
-                                         unproject(kCamera, pixel).value().homogeneous();
-          largest_error_mm = std::max(largest_error_mm, (surface_from_eye * in_eye - truth).norm());
-          const Eigen::Vector3d truth_in_eye = surface_from_eye.inverse() * truth;
-          largest_error_px =
-              std::max(largest_error_px, (project<double>(kCamera, truth_in_eye) - pixel).norm());
-        }
-      }
-      EXPECT_LT(largest_error_mm, 0.01) << motion_name(kind) << " at " << time_s << " s";
-      EXPECT_LT(largest_error_px, 1e-3) << motion_name(kind) << " at " << time_s << " s";
+      const auto errors = depth_errors(surface, surface_from_eye, kCamera, renderer.depth_mm());
+      EXPECT_LT(errors.largest_mm, 0.01) << motion_name(kind) << " at " << time_s << " s";
+      EXPECT_LT(errors.largest_px, 1e-3) << motion_name(kind) << " at " << time_s << " s";
     }
   }
+}
+
+TEST(Renderer, MeetsTheSurfaceThroughAStrongLensAndWithoutTexture) {
+  CameraModel camera = kCamera;
+  camera.distortion = {-0.3, 0, 0, 0, 0};
+  for (const auto scene : {SceneKind::kPlane, SceneKind::kBare}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      const Surface surface(seed, scene);
+      Renderer renderer(surface, camera, seed);
+      cv::Mat grey;
+      for (double time_s = 0; time_s < 20; time_s += 1.7) {
+        const Pose surface_from_eye = surface_from_eye_at(surface, MotionKind::kFree, time_s);
+        renderer.render(surface_from_eye, 0, grey);
+        const auto errors = depth_errors(surface, surface_from_eye, camera, renderer.depth_mm());
+        EXPECT_LT(errors.largest_mm, 0.01) << scene_name(scene) << " at " << time_s << " s";
+        EXPECT_LT(errors.largest_px, 1e-3) << scene_name(scene) << " at " << time_s << " s";
+      }
+    }
+  }
+}
+
+TEST(Renderer, BareHillsAreShadedButNotTextured) {
+  const auto roughness = [](SceneKind scene) {
+    const Surface surface(3, scene);
+    ImagingOptions noiseless;
+    noiseless.noise_grey = 0;
+    Renderer renderer(surface, kCamera, 3, noiseless);
+    cv::Mat grey;
+    renderer.render(surface_from_eye_at(surface, MotionKind::kFree, 1.0), 0, grey);
+    EXPECT_GT(cv::mean(grey)[0], 60.0);
+    return cv::norm(grey.colRange(1, grey.cols), grey.colRange(0, grey.cols - 1), cv::NORM_L1) /
+           static_cast<double>(grey.total());
+  };
+  EXPECT_LT(roughness(SceneKind::kBare), 0.3);
+  EXPECT_GT(roughness(SceneKind::kPlane), 2.0);
+  EXPECT_GT(roughness(SceneKind::kTissue), 2.0);
 }
 
 /// Cubic convolution (Catmull-Rom) of four samples at fraction 0..1 between the middle two.

@@ -3,20 +3,17 @@
 
 namespace handeye {
 
-void BoardStage::look(const Frame& frame, TrackedFrame& tracked) {
-  find_corners(frame);
-  tracked.timestamp_ns = frame.timestamp_ns;
-  tracked.index = next_index_++;
-  tracked.observations.clear();
+void BoardStage::look(const cv::Mat& grey, std::int64_t /*timestamp_ns*/, TrackedFrame& tracked) {
+  find_corners(grey);
   for (const BoardCorner& corner : corners_) {
     tracked.observations.push_back({corner.id, corner.pixel});
   }
 }
 
 /// What comes from a camera must not end the daemon, whatever it is.
-void BoardStage::find_corners(const Frame& frame) {
+void BoardStage::find_corners(const cv::Mat& grey) {
   try {
-    detector_->detect(frame.grey, corners_);
+    detector_->detect(grey, corners_);
   } catch (const cv::Exception& error) {
     corners_.clear();
     count_failure(error.err);

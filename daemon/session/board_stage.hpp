@@ -16,12 +16,11 @@ class BoardStage final : public ImageStage {
   explicit BoardStage(std::unique_ptr<BoardDetector> detector) : detector_(std::move(detector)) {}
 
  private:
-  void look(const Frame& frame, TrackedFrame& tracked) override;
-  void find_corners(const Frame& frame);
+  void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) override;
+  void find_corners(const cv::Mat& grey);
 
   std::unique_ptr<BoardDetector> detector_;
   std::vector<BoardCorner> corners_;
-  std::int64_t next_index_{0};
 };
 
 }  // namespace handeye

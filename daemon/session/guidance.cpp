@@ -10,6 +10,22 @@ constexpr double kEnoughRotation_deg = 20;
 constexpr double kEnoughSecondAxis_deg = 3;
 constexpr double kEnoughTranslation_mm = 15;
 
+/// About the picture itself; empty: it is as it should be, or as good as it can be.
+std::string guidance_about_picture(const Situation& situation) {
+  switch (situation.images) {
+    case ImageCondition::kDark:
+      return "too dark: switch the light on, take the lens cap off";
+    case ImageCondition::kFrozen:
+      return "the picture is frozen: check the camera's cable";
+    case ImageCondition::kBright:
+      return "picture too bright: draw back, or turn the light down";
+    case ImageCondition::kBlurred:
+      return "slower: the picture is blurred";
+    default:
+      return "";
+  }
+}
+
 /// About what is in view; empty: it is as it should be.
 std::string guidance_about_scene(const Situation& situation) {
   if (situation.features_recent >= kFewFeatures) return "";
@@ -42,6 +58,8 @@ std::string guidance_about_motion(const Situation& situation) {
 std::string guidance_for(const Situation& situation) {
   if (!situation.any_frame) return "no image from the camera yet";
   if (situation.hand_hidden) return "scope hidden from the tracker: turn its markers towards it";
+  const std::string about_picture = guidance_about_picture(situation);
+  if (!about_picture.empty()) return about_picture;
   const std::string about_view =
       situation.board ? guidance_about_board(situation) : guidance_about_scene(situation);
   return about_view.empty() ? guidance_about_motion(situation) : about_view;

@@ -6,6 +6,7 @@
 
 #include "daemon/geometry/board.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
+#include "daemon/tracking/image_condition.hpp"
 
 namespace handeye {
 
@@ -14,7 +15,8 @@ struct Situation {
   std::optional<Board> board;  ///< to be looked at; nothing: whatever is in view
   bool board_seen{false};      ///< it could be located at least once
   bool any_frame{false};
-  bool hand_hidden{false};    ///< in the tracker's last samples
+  bool hand_hidden{false};                       ///< in the tracker's last samples
+  ImageCondition images{ImageCondition::kGood};  ///< what ails most of the last ones
   double features_recent{0};  ///< tracked in the last frame; of a board: its corners
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
   double rotation_coverage_deg{0};

@@ -11,7 +11,19 @@ namespace handeye {
 
 void ImageStage::process(const Frame& frame, TrackedFrame& tracked) {
   const Stopwatch stopwatch;
-  look(frame, tracked);
+  ImageCondition condition = inspector_.inspect(frame.grey);
+  tracked.observations.clear();
+  tracked.descriptions.clear();
+  if (!shows_nothing(condition)) {
+    look(fields_.take(frame.grey), frame.timestamp_ns, tracked);
+    if (condition == ImageCondition::kGood && fields_.used_one_field()) {
+      condition = ImageCondition::kInterlaced;
+    }
+  }
+  // All frames count, also those that the tracker was not given: gaps tell how time passes.
+  tracked.index = frames_++;
+  tracked.timestamp_ns = frame.timestamp_ns;
+  tracked.condition = condition;
   time_ms_ += stopwatch.elapsed_ms();
 }
 

@@ -9,6 +9,8 @@
 
 #include "daemon/geometry/board.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
+#include "daemon/tracking/fields.hpp"
+#include "daemon/tracking/image_inspector.hpp"
 #include "drivers/camera.hpp"
 
 namespace handeye {
@@ -22,7 +24,8 @@ class ImageStage {
   ImageStage& operator=(const ImageStage&) = delete;
   virtual ~ImageStage() = default;
 
-  /// Frames in order of time, all of one size.
+  /// Frames in order of time, all of one size. In a dark or frozen one nothing is looked for; of an
+  /// interlaced one only one field is used.
   void process(const Frame& frame, TrackedFrame& tracked);
 
   /// Wall time spent so far [ms].
@@ -40,8 +43,12 @@ class ImageStage {
   }
 
  private:
-  virtual void look(const Frame& frame, TrackedFrame& tracked) = 0;
+  /// Fills in what is to be seen in an image that shows something: observations, descriptions.
+  virtual void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) = 0;
 
+  ImageInspector inspector_;
+  FieldSeparation fields_;
+  std::int64_t frames_{0};
   double time_ms_{0};
   std::int64_t failures_{0};
   std::string failure_;

@@ -3,30 +3,15 @@
 
 #include <utility>
 
-#include "daemon/tracking/field_of_view.hpp"
-
 namespace handeye {
-namespace {
-
-// The first images may be dark while the camera settles its exposure.
-constexpr int kMaskAttempts = 10;
-
-}  // namespace
 
 TrackingStage::TrackingStage(cv::Mat mask)
-    : tracker_(make_feature_tracker()),
-      mask_(std::move(mask)),
-      mask_attempts_left_(mask_.empty() ? kMaskAttempts : 0) {}
+    : field_of_view_(std::move(mask)), tracker_(make_feature_tracker()) {}
 
-void TrackingStage::look(const Frame& frame, TrackedFrame& tracked) {
-  find_mask(frame.grey);
-  tracker_->track(frame.grey, mask_, frame.timestamp_ns, tracked);
-}
-
-void TrackingStage::find_mask(const cv::Mat& grey) {
-  if (mask_attempts_left_ == 0 || !mask_.empty()) return;
-  --mask_attempts_left_;
-  mask_ = find_field_of_view(grey);
+void TrackingStage::look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) {
+  const cv::Mat& field = field_of_view_.look(grey);
+  const cv::Mat& usable = highlights_.usable(grey, field);
+  tracker_->track(grey, usable, timestamp_ns, tracked);
 }
 
 }  // namespace handeye

@@ -4,22 +4,24 @@
 #include <memory>
 
 #include "daemon/session/image_stage.hpp"
+#include "daemon/tracking/field_of_view.hpp"
+#include "daemon/tracking/highlights.hpp"
 
 namespace handeye {
 
-/// Finds the field of view where no mask was given, then tracks features.
+/// Finds the field of view where no mask was given, leaves the highlights out, tracks features in
+/// the rest.
 class TrackingStage final : public ImageStage {
  public:
-  /// `mask`: CV_8UC1, 255 = usable; empty: it is found in the first images.
+  /// `mask`: CV_8UC1, 255 = usable; empty: it is found in the images.
   explicit TrackingStage(cv::Mat mask);
 
  private:
-  void look(const Frame& frame, TrackedFrame& tracked) override;
-  void find_mask(const cv::Mat& grey);
+  void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) override;
 
+  FieldOfView field_of_view_;
+  Highlights highlights_;
   std::unique_ptr<FeatureTracker> tracker_;
-  cv::Mat mask_;
-  int mask_attempts_left_{0};
 };
 
 }  // namespace handeye

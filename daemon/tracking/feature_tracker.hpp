@@ -35,18 +35,15 @@ struct TrackedFrame {
   std::vector<FeatureDescription> descriptions;
 };
 
-/// Images wider than 1280 px are worked on at half their size or less, lightly smoothed: the optics
-/// of an endoscope resolve no more than that, and the grain of camera and video coder, which stands
-/// still while the scene moves, holds features back.
+/// Images wider than 1280 px are worked on at half their size or less: the optics of an endoscope
+/// resolve no more than that, and the grain of camera and video coder, which stands still while the
+/// scene moves, holds features back.
 struct TrackerOptions {
   int max_features{300};
-  int window_px{
-      0};  ///< side of the compared patch at the working size, odd; 0: 21, where shrunk 31
-  int pyramid_levels{4};       ///< beyond the working image itself
+  int pyramid_levels{4};       ///< beyond the working image itself, at most 5
   double min_distance_px{10};  ///< between features when new ones are sought, in the given image
   double quality{0.01};        ///< weakest corner accepted, of the strongest in the image
-  double max_forward_backward_px{0.5};  ///< tracked back it must land this near to where it began
-  int threads{2};                       ///< to track with; the results do not depend on it
+  int threads{2};              ///< to track with; the results do not depend on it
 };
 
 /// Follows features from frame to frame. One thread; frames in order of time.
@@ -66,8 +63,5 @@ class FeatureTracker {
 /// Inverse-compositional tracking with gain, offset and slope of the light per patch (Zinsser,
 /// Graessl, Niemann 2004), each feature against its first appearance.
 std::unique_ptr<FeatureTracker> make_feature_tracker(const TrackerOptions& options = {});
-
-/// OpenCV's pyramidal Lucas-Kanade with a forward-backward check and Shi-Tomasi corners.
-std::unique_ptr<FeatureTracker> make_lucas_kanade_tracker(const TrackerOptions& options = {});
 
 }  // namespace handeye

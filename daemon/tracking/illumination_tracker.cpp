@@ -32,6 +32,8 @@ constexpr float kWeakestCorner = 0.2F;  ///< (grey levels / px)^2
 constexpr float kMostGrowth = 1.6F;
 /// One that has come to look different by more is renewed while it is still known for sure.
 constexpr float kRenewCorrelation = 0.9F;
+/// Level of the pyramid at which the search for a feature of known velocity begins.
+constexpr int kPredictedLevel = 2;
 constexpr double kLongestGapS = 1.0;  ///< a velocity older than that says nothing
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -93,12 +95,15 @@ class IlluminationTracker final : public FeatureTracker {
 
   /// Coarse to fine from the last image, shifts only: to half a pixel or so.
   void follow() {
-    loop_.run(from_.size(), [this](std::size_t i) { followed_[i] = follow(from_[i], coarse_[i]); });
+    loop_.run(from_.size(), [this](std::size_t i) {
+      const int top = tracks_.age[i] > 0 ? kPredictedLevel : now_.levels() - 1;
+      followed_[i] = follow(from_[i], top, coarse_[i]);
+    });
   }
 
-  bool follow(const Eigen::Vector2f& from, Eigen::Vector2f& to) const {
+  bool follow(const Eigen::Vector2f& from, int top_level, Eigen::Vector2f& to) const {
     bool found = false;
-    for (int level = now_.levels() - 1; level >= 1; --level) {
+    for (int level = std::min(top_level, now_.levels() - 1); level >= 1; --level) {
       const float scale = 1.0F / static_cast<float>(1 << level);
       Eigen::Vector2f at_level = scale * to;
       const PatchFit fit = align_shift(before_, now_, level, scale * from, at_level);
@@ -140,7 +145,7 @@ class IlluminationTracker final : public FeatureTracker {
     loop_.run(from_.size(), [this](std::size_t i) {
       if (tracks_.lost[i] == 0) return;
       Eigen::Vector2f start = model_.moved(from_[i]);
-      follow(from_[i], start);
+      follow(from_[i], now_.levels() - 1, start);
       compare(i, start);
     });
   }

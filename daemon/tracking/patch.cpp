@@ -79,6 +79,24 @@ void sample_warped(const std::int16_t* pixels, std::ptrdiff_t stride, float x0, 
   }
 }
 
+/// 1 where all four pixels that a sample is made from may be looked at; returns how many.
+HANDEYE_VECTOR_CLONES
+int weights_shifted(const std::uint8_t* usable, std::ptrdiff_t stride, float* weights) {
+  int count = 0;
+  for (int row = 0; row < Patch::kSide; ++row) {
+    const std::uint8_t* above = usable + row * stride;
+    const std::uint8_t* below = above + stride;
+    float* out = weights + row * Patch::kStride;
+    for (int x = 0; x < Patch::kSide; ++x) {
+      const int may = above[x] & above[x + 1] & below[x] & below[x + 1] & 1;
+      out[x] = static_cast<float>(may);
+      count += may;
+    }
+    for (int x = Patch::kSide; x < Patch::kStride; ++x) out[x] = 0;
+  }
+  return count;
+}
+
 struct Box {
   int left, top, right, bottom;
 };
@@ -141,6 +159,20 @@ bool sample(const PaddedPlane<std::int16_t>& image, const AffineWarp& warp, Patc
   sample_warped(image.at(box.left, box.top), image.stride(), first.x(), first.y(), linear.data(),
                 patch.value.data());
   return true;
+}
+
+float usable_share(const ImagePyramid& pyramid, int level, const Eigen::Vector2f& centre,
+                   Patch& weights) {
+  const PaddedPlane<std::uint8_t>& usable = pyramid.usable(level);
+  if (!is_near(centre, usable.size())) return 0;
+  const int left = static_cast<int>(std::floor(centre.x())) - Patch::kRadius;
+  const int top = static_cast<int>(std::floor(centre.y())) - Patch::kRadius;
+  const int right = left + Patch::kSide;
+  const int bottom = top + Patch::kSide;
+  if (pyramid.all_usable(level, left, top, right, bottom)) return 1;
+  if (!usable.holds(left, top, right, bottom)) return 0;
+  const int count = weights_shifted(usable.at(left, top), usable.stride(), weights.value.data());
+  return static_cast<float>(count) / static_cast<float>(Patch::kPixels);
 }
 
 float usable_share(const ImagePyramid& pyramid, int level, const AffineWarp& warp, Patch& weights) {

@@ -12,7 +12,7 @@ namespace handeye {
 
 /// A square of grey values around a feature; rows are padded to whole vectors, the padding is zero.
 struct alignas(32) Patch {
-  static constexpr int kRadius = 10;
+  static constexpr int kRadius = 11;
   static constexpr int kSide = 2 * kRadius + 1;
   static constexpr int kStride = 24;
   static constexpr int kPixels = kSide * kSide;
@@ -42,8 +42,12 @@ bool sample(const PaddedPlane<std::int16_t>& image, const Eigen::Vector2f& centr
 /// The same through an affine warp.
 bool sample(const PaddedPlane<std::int16_t>& image, const AffineWarp& warp, Patch& patch);
 
-/// Where the warped patch may be looked at: 1, elsewhere 0. Returns the share of its pixels, and
-/// leaves `weights` alone when that is all of them (the usual case, and quick).
+/// Where the patch may be looked at: 1, elsewhere 0. Returns the share of its pixels, and leaves
+/// `weights` alone when that is all of them (the usual case, and quick).
+float usable_share(const ImagePyramid& pyramid, int level, const Eigen::Vector2f& centre,
+                   Patch& weights);
+
+/// The same through an affine warp.
 float usable_share(const ImagePyramid& pyramid, int level, const AffineWarp& warp, Patch& weights);
 
 }  // namespace handeye

@@ -119,17 +119,15 @@ PatchFit align_shift(const ImagePyramid& before, const ImagePyramid& now, int le
   if (!before.grey(level).holds(x - kReach, y - kReach, x - kReach + Patch::kStride, y + kReach)) {
     return {};
   }
-  AffineWarp there;
-  there.centre = {static_cast<float>(x), static_cast<float>(y)};
-  AffineWarp here;
-  here.centre = found - offset;
-  PatchBasis basis;
-  basis.take(before.grey(level), x, y);
+  const Eigen::Vector2f there(static_cast<float>(x), static_cast<float>(y));
+  const Eigen::Vector2f here = found - offset;
   Patch weights_there;
   Patch weights_here;
   const float share_there = usable_share(before, level, there, weights_there);
   const float share_here = usable_share(now, level, here, weights_here);
   if (share_there + share_here < 1.0F + kLeastShare) return {};
+  PatchBasis basis;
+  basis.take(before.grey(level), x, y);
   const bool whole = share_there >= 1.0F && share_here >= 1.0F;
   if (!whole) {
     if (share_there >= 1.0F) weights_there = whole_patch();
@@ -146,7 +144,7 @@ PatchFit align_shift(const ImagePyramid& before, const ImagePyramid& now, int le
   const double sigma = sigma_per_noise(inverse);
   if (kLeastNoise * sigma > kWeakestSigma) return {};
 
-  Eigen::Vector2f centre = here.centre;
+  Eigen::Vector2f centre = here;
   Patch image;
   for (int iteration = 0; iteration < kMaxShiftIterations; ++iteration) {
     if (!sample(now.grey(level), centre, image)) return {};
@@ -158,7 +156,7 @@ PatchFit align_shift(const ImagePyramid& before, const ImagePyramid& now, int le
     if (!(gain > kLeastGain && gain < kMostGain)) return {};
     const Eigen::Vector2f step = (change.head<2>() / gain).cast<float>();
     centre -= step;
-    if ((centre - here.centre).norm() > kFarthestShift) return {};
+    if ((centre - here).norm() > kFarthestShift) return {};
     if (step.norm() < kShiftConverged || iteration + 1 == kMaxShiftIterations) {
       found = centre + offset;
       return judge(sums.with_itself, with_basis.dot(change), gain * gain * normal(2, 2), sigma,

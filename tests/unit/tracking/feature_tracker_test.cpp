@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/tracking/feature_tracker.hpp"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "daemon/tracking/feature_tracker.hpp"
 #include "tests/unit/tracking/moving_texture.hpp"
 
 namespace handeye {

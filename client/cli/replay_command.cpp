@@ -11,6 +11,7 @@
 #include "client/cli/options.hpp"
 #include "client/cli/result_output.hpp"
 #include "daemon/session/replay.hpp"
+#include "protocol/exit_codes.hpp"
 
 namespace handeye::cli {
 namespace {
@@ -19,6 +20,7 @@ struct ReplayCommandOptions {
   OutputOptions output;
   EyeOptions eye;
   ReplayOptions replay;
+  std::string intrinsics{intrinsics_word(IntrinsicsMode::kFixed)};
   std::string camera_file;
   std::string mask_file;
   std::filesystem::path save;
@@ -26,6 +28,12 @@ struct ReplayCommandOptions {
 
 ExitCode run_replay(ReplayCommandOptions options) {
   options.replay.board = chosen_board(options.eye);
+  options.replay.intrinsics = *intrinsics_from_word(options.intrinsics);
+  if (options.replay.board && options.replay.intrinsics != IntrinsicsMode::kFixed) {
+    throw UsageError(
+        "--intrinsics refine and estimate are for --eye sfm; for a board's images use "
+        "handeye intrinsics");
+  }
   if (!options.camera_file.empty()) options.replay.camera_file = options.camera_file;
   if (!options.mask_file.empty()) options.replay.mask_file = options.mask_file;
   ProgressLine progress;
@@ -50,6 +58,12 @@ void add_replay_command(CLI::App& app, Action& action) {
   add_eye_options(*command, options->eye);
   command->add_option("--camera", options->camera_file, "intrinsics instead of the recording's")
       ->type_name("FILE");
+  command
+      ->add_option("--intrinsics", options->intrinsics,
+                   "fixed: the lens as given; refine: that is where it starts; estimate: from the "
+                   "images alone, no camera file needed")
+      ->check(CLI::IsMember({"fixed", "refine", "estimate"}))
+      ->capture_default_str();
   command
       ->add_option("--mask", options->mask_file, "mask (white = usable) instead of the recording's")
       ->type_name("FILE");

@@ -17,11 +17,25 @@ std::string time_offset_text(const CalibrationResult& result) {
   return row("time offset", text + ", added to the tracker's time stamps");
 }
 
+/// What is found of a lens with the calibration, and how sure that is.
+std::string lens_text(const CalibrationResult& result) {
+  if (!result.lens) return "";
+  if (!result.lens->observable) return row("lens", "the images do not tell it");
+  const CameraModel& camera = result.camera;
+  const LensSigma& sigma = result.lens->sigma;
+  return row("lens", fmt::format("focal length {:.2f} +- {:.2f} px, centre +- {:.2f} px, k1 {:.4f} "
+                                 "+- {:.4f}, k2 {:.4f} +- {:.4f}; distortion +- {:.2f} px",
+                                 0.5 * (camera.fx + camera.fy), sigma.focal_px, sigma.centre_px,
+                                 camera.distortion[0], sigma.k1, camera.distortion[1], sigma.k2,
+                                 sigma.distortion_px));
+}
+
 std::string camera_text(const CalibrationResult& result) {
   const CameraModel& camera = result.camera;
   return row("camera", fmt::format("{}x{}  fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, {}",
                                    camera.width, camera.height, camera.fx, camera.fy, camera.cx,
-                                   camera.cy, printable(result.camera_source)));
+                                   camera.cy, printable(result.camera_source))) +
+         lens_text(result);
 }
 
 /// The columns of the paper's tables.

@@ -92,6 +92,22 @@ void read_tracker(Section section, Config::Tracker& tracker) {
   section.reject_unknown_keys();
 }
 
+/// What is done about the lens, and whether enough is known for it.
+void read_intrinsics_mode(Section& section, Config::Camera& camera) {
+  std::string word(intrinsics_word(camera.intrinsics_mode));
+  read_choice(section, "intrinsics_mode", word,
+              std::array<std::string_view, 3>{"fixed", "refine", "estimate"});
+  camera.intrinsics_mode = *intrinsics_from_word(word);
+  if (!camera.intrinsics.empty()) return;
+  if (camera.intrinsics_mode != IntrinsicsMode::kEstimate) {
+    section.fail("intrinsics",
+                 "is missing: name the camera.json of this camera, or have the lens found with "
+                 "intrinsics_mode = \"estimate\"");
+  }
+  if (camera.width == 0) section.fail("width", "is needed where no intrinsics are given");
+  if (camera.height == 0) section.fail("height", "is needed where no intrinsics are given");
+}
+
 void read_camera(Section section, const std::filesystem::path& directory, Config::Camera& camera) {
   std::string driver = "v4l2";
   const auto choice =
@@ -104,9 +120,7 @@ void read_camera(Section section, const std::filesystem::path& directory, Config
   section.read("exposure_ms", camera.exposure_ms, 0, 1000);
   read_path(section, "intrinsics", directory, camera.intrinsics);
   read_path(section, "mask", directory, camera.mask);
-  if (camera.intrinsics.empty()) {
-    section.fail("intrinsics", "is missing: name the camera.json of this camera");
-  }
+  read_intrinsics_mode(section, camera);
   section.reject_unknown_keys();
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "daemon/geometry/intrinsics_mode.hpp"
 #include "daemon/session/result.hpp"
 #include "protocol/channels.hpp"
 
@@ -34,10 +35,13 @@ struct Config {
     std::string device{"/dev/endoscope0"};  ///< v4l2
     int width{0};                           ///< px wanted of the device; 0: as the intrinsics say
     int height{0};
-    double rate_hz{0};                 ///< wanted of the device; 0: its own choice
-    double exposure_ms{0};             ///< to shift the stamp to mid-exposure
-    std::filesystem::path intrinsics;  ///< camera.json; relative to the configuration file
-    std::filesystem::path mask;        ///< white = usable; empty: found in the image
+    double rate_hz{0};      ///< wanted of the device; 0: its own choice
+    double exposure_ms{0};  ///< to shift the stamp to mid-exposure
+    /// camera.json; relative to the configuration file. Empty, with kEstimate only: nothing is
+    /// known of the lens, and width and height must be given.
+    std::filesystem::path intrinsics;
+    IntrinsicsMode intrinsics_mode{IntrinsicsMode::kFixed};
+    std::filesystem::path mask;  ///< white = usable; empty: found in the image
   } camera;
 
   struct Calibration {

@@ -34,7 +34,8 @@ VisionThread::Options vision_options(const Config& config, const CameraFiles& fi
 }
 
 SolverThread::Options solver_options(const Config& config, const CameraFiles& files) {
-  SolverThread::Options options{.camera = files.model, .noise = {}};
+  SolverThread::Options options{
+      .camera = files.model, .intrinsics = config.camera.intrinsics_mode, .noise = {}};
   options.noise.hand_rotation_rad = rad_from_deg(config.tracker.noise_rotation_deg);
   options.noise.hand_translation_mm = config.tracker.noise_translation_mm;
   options.min_duration_s = config.calibration.min_duration_s;
@@ -44,13 +45,21 @@ SolverThread::Options solver_options(const Config& config, const CameraFiles& fi
 }  // namespace
 
 CameraFiles read_camera_files(const Config::Camera& config) {
-  CameraFiles files{.model = read_camera_model(config.intrinsics), .mask = {}};
+  CameraFiles files;
+  if (config.intrinsics.empty()) {
+    files.model.width = config.width;
+    files.model.height = config.height;
+  } else {
+    files.model = read_camera_model(config.intrinsics);
+  }
   if (!config.mask.empty()) files.mask = read_mask(config.mask);
   const cv::Size size(files.model.width, files.model.height);
   if (!files.mask.empty() && files.mask.size() != size) {
+    const std::string camera =
+        config.intrinsics.empty() ? "the camera" : config.intrinsics.string();
     throw InputError(fmt::format("{}: the mask is {}x{}, but {} is for {}x{}", config.mask.string(),
-                                 files.mask.cols, files.mask.rows, config.intrinsics.string(),
-                                 size.width, size.height));
+                                 files.mask.cols, files.mask.rows, camera, size.width,
+                                 size.height));
   }
   return files;
 }
@@ -104,7 +113,11 @@ void Service::say_ready() {
 
 void Service::on_request(const request_t& message) {
   std::string problem;
-  const auto request = read_request(message, problem);
+  auto request = read_request(message, problem);
+  if (request && request->board && config_.camera.intrinsics.empty()) {
+    problem = "a board needs the camera's intrinsics, and the configuration names none";
+    request.reset();
+  }
   if (!request) {
     spdlog::warn("request {}: {}", message.request_id, problem);
     session_.refuse({message.request_id, AckCode::kBadRequest, problem});

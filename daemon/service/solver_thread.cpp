@@ -67,6 +67,7 @@ void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) 
   set_progress({});
   Running running{.calibration = Calibration({.start = begin.start,
                                               .camera = options_.camera,
+                                              .intrinsics = options_.intrinsics,
                                               .noise = options_.noise,
                                               .reconstruction = {}}),
                   .number = begin.calibration,

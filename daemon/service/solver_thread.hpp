@@ -21,7 +21,8 @@ namespace handeye {
 class SolverThread {
  public:
   struct Options {
-    CameraModel camera;
+    CameraModel camera;  ///< without a focal length: nothing is known of the lens
+    IntrinsicsMode intrinsics{IntrinsicsMode::kFixed};
     PoseNoise noise;
     double min_duration_s{8};
   };

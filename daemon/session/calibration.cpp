@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/session/guidance.hpp"
+#include "daemon/session/lens_sensitivity.hpp"
 #include "daemon/session/method_comparison.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "daemon/session/verdict.hpp"
@@ -59,6 +60,14 @@ void write_covariance(const Matrix6d& covariance, CalibrationResult& result) {
   result.sigma_translation_mm = sigma_translation_mm(covariance);
 }
 
+/// A lens that was not given is the answer's, with what it is worth.
+void write_lens(const Lens& lens, CalibrationResult& result) {
+  if (lens.mode == IntrinsicsMode::kFixed) return;
+  result.camera = lens.camera;
+  result.camera_source = lens.mode == IntrinsicsMode::kRefine ? "refined" : "estimated";
+  result.lens = LensQuality{lens.sigma, lens.observable};
+}
+
 void write_estimate(const Estimate& estimate, const PoseNoise& noise, CalibrationResult& result) {
   result.methods = methods_of(estimate, noise);
   if (estimate.correlation) {
@@ -76,7 +85,8 @@ void write_estimate(const Estimate& estimate, const PoseNoise& noise, Calibratio
 
 Calibration::Calibration(const CalibrationOptions& options)
     : options_(options),
-      eye_(make_eye_source(options.start.board, options.camera, options.reconstruction)),
+      eye_(make_eye_source(options.start.board, options.camera, options.intrinsics,
+                           options.reconstruction)),
       hand_({.capacity = options.hand_capacity}) {}
 
 void Calibration::add_hand(const HandSample& sample) {
@@ -88,9 +98,11 @@ void Calibration::add_hand(const HandSample& sample) {
 void Calibration::add_frame(const TrackedFrame& frame) {
   const Stopwatch stopwatch;
   ++frames_;
+  images_.add(frame.condition);
   features_recent_ = static_cast<int>(frame.observations.size());
   features_ += features_recent_;
-  state_ = eye_->add(frame);
+  // A gap, not a loss: what was tracked before is likely to be there after it.
+  if (!shows_nothing(frame.condition)) state_ = eye_->add(frame);
   reconstruction_ms_ += stopwatch.elapsed_ms();
 }
 
@@ -103,6 +115,7 @@ CalibrationProgress Calibration::progress() const {
                                     .board_seen = eye_->keyframes() > 0,
                                     .any_frame = frames_ > 0,
                                     .hand_hidden = hand_hidden_,
+                                    .images = images_.recent(),
                                     .features_recent = static_cast<double>(features_recent_),
                                     .state = state_,
                                     .rotation_coverage_deg = progress.rotation_coverage_deg,
@@ -123,14 +136,16 @@ CalibrationResult Calibration::solve() {
   const Stopwatch stopwatch;
   const Estimate found = estimate(reconstruction.frames, hand_, options_.noise, eye_->scale());
   write_estimate(found, options_.noise, result);
-  const Finding finding = conclude({.frames_received = frames_,
-                                    .hand_path = hand_path_.room_from_hand(),
-                                    .reconstruction = reconstruction,
-                                    .estimate = found,
-                                    .noise = options_.noise,
-                                    .wanted = options_.start.wanted});
-  if (found.likelihood && finding.judgement)
-    write_covariance(finding.judgement->covariance, result);
+  const Finding finding =
+      conclude({.frames_received = frames_,
+                .images = images_,
+                .hand_path = hand_path_.room_from_hand(),
+                .reconstruction = reconstruction,
+                .estimate = found,
+                .lens_covariance = lens_covariance(reconstruction, found, hand_),
+                .noise = options_.noise,
+                .wanted = options_.start.wanted});
+  if (found.likelihood && finding.judgement) write_covariance(finding.covariance, result);
   result.reason = finding.reason;
   result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
   result.advice = advice_for(result.reason, found);
@@ -154,6 +169,11 @@ CalibrationResult Calibration::begin_result() const {
   result.board = options_.start.board;
   result.camera = options_.camera;
   result.frames.received = frames_;
+  result.frames.dark = images_.count(ImageCondition::kDark);
+  result.frames.frozen = images_.count(ImageCondition::kFrozen);
+  result.frames.bright = images_.count(ImageCondition::kBright);
+  result.frames.blurred = images_.count(ImageCondition::kBlurred);
+  result.frames.interlaced = images_.count(ImageCondition::kInterlaced);
   if (frames_ > 0) {
     result.features.tracked_mean = static_cast<double>(features_) / static_cast<double>(frames_);
   }
@@ -169,6 +189,7 @@ Reconstruction Calibration::reconstruct(CalibrationResult& result) {
       std::ranges::count_if(reconstruction.frames, &RegisteredFrame::keyframe);
   result.features.points = reconstruction.points;
   result.reprojection_px = reconstruction.reprojection_px;
+  write_lens(reconstruction.lens, result);
   result.timings_ms.reconstruction = reconstruction_ms_;
   return reconstruction;
 }

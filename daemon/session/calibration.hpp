@@ -12,6 +12,7 @@
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/eye_source.hpp"
 #include "daemon/session/hand_path.hpp"
+#include "daemon/session/image_health.hpp"
 #include "daemon/session/result.hpp"
 #include "daemon/session/session.hpp"
 #include "daemon/sync/pose_buffer.hpp"
@@ -20,7 +21,8 @@ namespace handeye {
 
 struct CalibrationOptions {
   StartOptions start;  ///< with a board: the eye's poses come from it
-  CameraModel camera;
+  CameraModel camera;  ///< with kEstimate and no board only its width and height count
+  IntrinsicsMode intrinsics{IntrinsicsMode::kFixed};  ///< of a reconstruction
   PoseNoise noise;  ///< of the tracker; the eye's is found from the data
   ReconstructionOptions reconstruction;
   std::size_t hand_capacity{65'536};  ///< samples of the hand kept; the oldest go first
@@ -68,6 +70,7 @@ class Calibration {
   HandPath hand_path_;
   bool hand_hidden_{false};  ///< in the last sample
   std::int64_t frames_{0};
+  ImageHealth images_;
   std::int64_t features_{0};  ///< summed over the frames
   int features_recent_{0};    ///< in the last frame
   double reconstruction_ms_{0};

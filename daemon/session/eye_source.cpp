@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/eye_source.hpp"
 
+#include <utility>
+
+#include "daemon/reconstruction/self_calibration.hpp"
 #include "daemon/session/board_eye.hpp"
 
 namespace handeye {
 namespace {
 
+/// Whatever is in view, reconstructed with a lens that is given or, by SelfCalibration, found.
+template <typename ReconstructionKind>
 class SceneEye final : public EyeSource {
  public:
-  SceneEye(const CameraModel& camera, const ReconstructionOptions& options)
-      : reconstruction_(camera, options) {}
+  template <typename... Arguments>
+  explicit SceneEye(Arguments&&... arguments)
+      : reconstruction_(std::forward<Arguments>(arguments)...) {}
 
   ScaleMode scale() const override { return ScaleMode::kUnknown; }
   ReconstructionState add(const TrackedFrame& frame) override { return reconstruction_.add(frame); }
@@ -18,16 +24,19 @@ class SceneEye final : public EyeSource {
   int keyframes() const override { return reconstruction_.keyframes(); }
 
  private:
-  IncrementalReconstruction reconstruction_;
+  ReconstructionKind reconstruction_;
 };
 
 }  // namespace
 
 std::unique_ptr<EyeSource> make_eye_source(const std::optional<Board>& board,
-                                           const CameraModel& camera,
+                                           const CameraModel& camera, IntrinsicsMode intrinsics,
                                            const ReconstructionOptions& options) {
   if (board) return std::make_unique<BoardEye>(*board, camera);
-  return std::make_unique<SceneEye>(camera, options);
+  if (intrinsics == IntrinsicsMode::kFixed) {
+    return std::make_unique<SceneEye<IncrementalReconstruction>>(camera, options);
+  }
+  return std::make_unique<SceneEye<SelfCalibration>>(camera, intrinsics, options);
 }
 
 }  // namespace handeye

@@ -6,6 +6,7 @@
 
 #include "daemon/geometry/board.hpp"
 #include "daemon/geometry/camera_model.hpp"
+#include "daemon/geometry/intrinsics_mode.hpp"
 #include "daemon/handeye/types.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 
@@ -35,9 +36,10 @@ class EyeSource {
   virtual int keyframes() const = 0;
 };
 
-/// `board`: nothing reconstructs.
+/// `board`: nothing reconstructs. `intrinsics`: what a reconstruction does about the lens; a
+/// board's poses are found with the lens as given.
 std::unique_ptr<EyeSource> make_eye_source(const std::optional<Board>& board,
-                                           const CameraModel& camera,
+                                           const CameraModel& camera, IntrinsicsMode intrinsics,
                                            const ReconstructionOptions& options);
 
 }  // namespace handeye

@@ -30,6 +30,11 @@ constexpr std::array kReasons{
         Reason::kTooFewFeatures, "too_few_features",
         "Too little to follow in the image: go nearer to a textured surface, give more light, "
         "move slower."},
+    ReasonText{Reason::kImageDark, "image_dark",
+               "The picture was dark: switch the light on, take the lens cap off, clean the lens."},
+    ReasonText{Reason::kImageFrozen, "image_frozen",
+               "The picture stood still while the scope moved: check the camera's cable, and that "
+               "the video processor does not hold its picture."},
     ReasonText{
         Reason::kTrackerLost, "tracker_lost",
         "The tracker did not see the scope: keep its markers in the tracker's view, and check "
@@ -40,6 +45,9 @@ constexpr std::array kReasons{
         Reason::kClockUnstable, "clock_unstable",
         "The time offset between camera and tracker could not be found: move the scope faster "
         "and less regularly, and check both devices' clocks."},
+    ReasonText{Reason::kLensUnobservable, "lens_unobservable",
+               "The images do not tell the lens: go closer and farther and tilt more, or give the "
+               "camera's intrinsics."},
     ReasonText{Reason::kUncertain, "uncertain",
                "The result is not certain enough: move longer, with larger tilts and slides."},
     ReasonText{Reason::kCancelled, "cancelled", ""},

@@ -2,6 +2,7 @@
 #include "daemon/session/replay.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -21,11 +22,30 @@ namespace {
 // Only how often the progress is told.
 constexpr std::int64_t kProgressEvery = 10;
 
+/// All that the images themselves say: their size.
+CameraModel camera_of_unknown_lens(const std::filesystem::path& path) {
+  const Recording recording = open_recording(path);
+  if (const auto problem = recording.camera->open()) throw InputError(*problem);
+  Frame first;
+  if (recording.camera->grab(first, std::chrono::milliseconds(0)) != GrabStatus::kFrame) {
+    throw InputError(fmt::format("{}: has no images", path.string()));
+  }
+  CameraModel camera;
+  camera.width = first.grey.cols;
+  camera.height = first.grey.rows;
+  return camera;
+}
+
 CameraModel camera_for(const Recording& recording, const ReplayOptions& options) {
   if (options.camera_file) return read_camera_model(*options.camera_file);
   if (recording.camera_model) return *recording.camera_model;
-  throw InputError(fmt::format("{}: has no camera.json; name the camera's with --camera FILE",
-                               options.recording.string()));
+  if (options.intrinsics == IntrinsicsMode::kEstimate && !options.board) {
+    return camera_of_unknown_lens(options.recording);
+  }
+  throw InputError(fmt::format(
+      "{}: has no camera.json; name the camera's with --camera FILE, or "
+      "have the lens found with --intrinsics estimate{}",
+      options.recording.string(), options.board ? " from a scene without a board" : ""));
 }
 
 cv::Mat mask_for(const Recording& recording, const ReplayOptions& options,
@@ -54,6 +74,7 @@ CalibrationOptions calibration_options(const ReplayOptions& options, const Camer
   calibration.start.wanted = options.wanted;
   calibration.start.board = options.board;
   calibration.camera = camera;
+  calibration.intrinsics = options.intrinsics;
   calibration.hand_capacity = std::max<std::size_t>(datagrams, 1);
   return calibration;
 }

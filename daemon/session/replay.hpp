@@ -11,9 +11,10 @@ namespace handeye {
 
 struct ReplayOptions {
   std::filesystem::path recording;
-  std::optional<std::filesystem::path> camera_file;  ///< overrides the recording's camera.json
-  std::optional<std::filesystem::path> mask_file;    ///< overrides the recording's mask.png
-  int body_id{-1};                                   ///< -1: the first body that is seen
+  std::optional<std::filesystem::path> camera_file;   ///< overrides the recording's camera.json
+  std::optional<std::filesystem::path> mask_file;     ///< overrides the recording's mask.png
+  IntrinsicsMode intrinsics{IntrinsicsMode::kFixed};  ///< kEstimate: a camera file may be missing
+  int body_id{-1};                                    ///< -1: the first body that is seen
   WantedSigma wanted;
   std::optional<Board> board;  ///< the eye's poses from it; nothing: from a reconstruction
   /// Called now and then with the number of frames done; for progress on a terminal. May be empty.

@@ -11,6 +11,7 @@
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/pose.hpp"
 #include "daemon/handeye/types.hpp"
+#include "daemon/reconstruction/reconstruction.hpp"
 
 namespace handeye {
 
@@ -26,9 +27,12 @@ enum class Reason {
   kFixedPoint,
   kNoParallax,
   kTooFewFeatures,
+  kImageDark,
+  kImageFrozen,
   kTrackerLost,
   kCameraLost,
   kClockUnstable,
+  kLensUnobservable,
   kUncertain,
   kCancelled,
 };
@@ -64,6 +68,12 @@ struct MethodResult {
   std::optional<MethodSigma> sigma;  ///< of its own solution; nothing: not asked for, or not known
 };
 
+/// What a lens that was found with the calibration is worth.
+struct LensQuality {
+  LensSigma sigma;
+  bool observable{false};  ///< false: the images do not tell the lens, and the camera is a guess
+};
+
 /// Everything a calibration says; the fields of the result JSON and of result_t.
 struct CalibrationResult {
   std::int64_t request_id{0};
@@ -85,12 +95,16 @@ struct CalibrationResult {
 
   CameraModel camera;
   std::string camera_source{"given"};  ///< given, refined, estimated
+  std::optional<LensQuality> lens;     ///< nothing: given
   Residuals residuals;
   double reprojection_px{0};
   std::vector<MethodResult> methods;
 
   struct Frames {
     std::int64_t received{0}, used{0}, keyframes{0}, dropped{0};
+    std::int64_t dark{0}, frozen{0};  ///< of those received; not used
+    /// Of those received; used as far as they go.
+    std::int64_t bright{0}, blurred{0}, interlaced{0};
   } frames;
   struct Features {
     double tracked_mean{0};

@@ -28,15 +28,29 @@ std::string_view verdict_word(Verdict verdict) {
   return "refused";
 }
 
-Json camera_json(const CameraModel& camera, const std::string& source) {
-  return {{"width", camera.width},
-          {"height", camera.height},
-          {"fx", camera.fx},
-          {"fy", camera.fy},
-          {"cx", camera.cx},
-          {"cy", camera.cy},
-          {"distortion", camera.distortion},
-          {"source", source}};
+Json lens_sigma_json(const LensSigma& sigma) {
+  return {{"focal_px", number(sigma.focal_px)},
+          {"centre_px", number(sigma.centre_px)},
+          {"k1", number(sigma.k1)},
+          {"k2", number(sigma.k2)},
+          {"distortion_px", number(sigma.distortion_px)}};
+}
+
+Json camera_json(const CalibrationResult& result) {
+  const CameraModel& camera = result.camera;
+  Json json{{"width", camera.width},
+            {"height", camera.height},
+            {"fx", camera.fx},
+            {"fy", camera.fy},
+            {"cx", camera.cx},
+            {"cy", camera.cy},
+            {"distortion", camera.distortion},
+            {"source", result.camera_source}};
+  if (result.lens) {
+    json["sigma"] = lens_sigma_json(result.lens->sigma);
+    json["observable"] = result.lens->observable;
+  }
+  return json;
 }
 
 Json residuals_json(const Residuals& residuals) {
@@ -105,7 +119,7 @@ Json to_json(const CalibrationResult& result) {
   json["eye"] = result.board ? "pattern" : "sfm";
   if (result.board) json["board"] = to_string(*result.board);
   add_estimate(json, result);
-  json["camera"] = camera_json(result.camera, result.camera_source);
+  json["camera"] = camera_json(result);
   json["residuals"] = residuals_json(result.residuals);
   json["residuals"]["reprojection_px"] = number(result.reprojection_px);
   json["methods"] = Json::array();
@@ -113,7 +127,12 @@ Json to_json(const CalibrationResult& result) {
   json["frames"] = {{"received", result.frames.received},
                     {"used", result.frames.used},
                     {"keyframes", result.frames.keyframes},
-                    {"dropped", result.frames.dropped}};
+                    {"dropped", result.frames.dropped},
+                    {"dark", result.frames.dark},
+                    {"frozen", result.frames.frozen},
+                    {"bright", result.frames.bright},
+                    {"blurred", result.frames.blurred},
+                    {"interlaced", result.frames.interlaced}};
   json["features"] = {{"tracked_mean", number(result.features.tracked_mean)},
                       {"points", result.features.points}};
   json["timings_ms"] = {{"tracking", number(result.timings_ms.tracking)},

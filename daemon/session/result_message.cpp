@@ -11,6 +11,8 @@ namespace {
 // What result_t says where there is nothing to say.
 constexpr double kNoTimeOffset = 0;
 constexpr double kNoTimeOffsetSigma = -1;
+// The source of a lens of which no more is said.
+constexpr std::string_view kGivenLens = "given";
 
 std::int32_t verdict_code(Verdict verdict) {
   switch (verdict) {
@@ -68,6 +70,13 @@ void write_camera(const CalibrationResult& result, result_t& message) {
   message.cy = result.camera.cy;
   std::ranges::copy(result.camera.distortion, message.distortion);
   message.camera_source = result.camera_source;
+  const LensQuality lens = result.lens.value_or(LensQuality{.observable = true});
+  message.lens_observable = lens.observable;
+  message.lens_sigma_focal_px = lens.sigma.focal_px;
+  message.lens_sigma_centre_px = lens.sigma.centre_px;
+  message.lens_sigma_k1 = lens.sigma.k1;
+  message.lens_sigma_k2 = lens.sigma.k2;
+  message.lens_sigma_distortion_px = lens.sigma.distortion_px;
 }
 
 void read_camera(const result_t& message, CalibrationResult& result) {
@@ -79,6 +88,13 @@ void read_camera(const result_t& message, CalibrationResult& result) {
   result.camera.cy = message.cy;
   std::ranges::copy(message.distortion, result.camera.distortion.begin());
   result.camera_source = message.camera_source;
+  if (message.camera_source == kGivenLens) return;
+  result.lens = LensQuality{.sigma = {.focal_px = message.lens_sigma_focal_px,
+                                      .centre_px = message.lens_sigma_centre_px,
+                                      .k1 = message.lens_sigma_k1,
+                                      .k2 = message.lens_sigma_k2,
+                                      .distortion_px = message.lens_sigma_distortion_px},
+                            .observable = message.lens_observable != 0};
 }
 
 void write_figures(const CalibrationResult& result, result_t& message) {
@@ -91,6 +107,11 @@ void write_figures(const CalibrationResult& result, result_t& message) {
   message.frames_used = result.frames.used;
   message.frames_keyframes = result.frames.keyframes;
   message.frames_dropped = result.frames.dropped;
+  message.frames_dark = result.frames.dark;
+  message.frames_frozen = result.frames.frozen;
+  message.frames_bright = result.frames.bright;
+  message.frames_blurred = result.frames.blurred;
+  message.frames_interlaced = result.frames.interlaced;
   message.features_tracked_mean = result.features.tracked_mean;
   message.points = result.features.points;
   message.time_tracking_ms = result.timings_ms.tracking;
@@ -104,8 +125,15 @@ void read_figures(const result_t& message, CalibrationResult& result) {
                       message.residual_translation_percent,
                       message.residual_translation_norm_percent};
   result.reprojection_px = message.reprojection_px;
-  result.frames = {message.frames_received, message.frames_used, message.frames_keyframes,
-                   message.frames_dropped};
+  result.frames = {.received = message.frames_received,
+                   .used = message.frames_used,
+                   .keyframes = message.frames_keyframes,
+                   .dropped = message.frames_dropped,
+                   .dark = message.frames_dark,
+                   .frozen = message.frames_frozen,
+                   .bright = message.frames_bright,
+                   .blurred = message.frames_blurred,
+                   .interlaced = message.frames_interlaced};
   result.features = {message.features_tracked_mean, message.points};
   result.timings_ms = {message.time_tracking_ms, message.time_reconstruction_ms,
                        message.time_handeye_ms, message.time_total_ms};

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/verdict.hpp"
 
+#include <cmath>
+
+#include "daemon/session/lens_sensitivity.hpp"
+
 namespace handeye {
 namespace {
 
@@ -11,6 +15,8 @@ constexpr std::size_t kFewestBoardPoses = 4;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault; of
 // frames with a visible board, it is for want of the board.
 constexpr double kSeenEnough = 0.5;
+// A focal length that is off turns the eye more, or less, than the hand by about as much.
+constexpr double kMaxRotationExcess = 0.03;
 
 bool with_board(const Evidence& evidence) {
   return evidence.estimate.scale == ScaleMode::kKnown;
@@ -47,6 +53,20 @@ bool looked_past_board(const Evidence& evidence) {
   return problem == MotionProblem::kNone || problem == MotionProblem::kFixedPoint;
 }
 
+/// Whether the lens was given, or found and not contradicted by the hand.
+bool lens_is_known(const Evidence& evidence) {
+  const Lens& lens = evidence.reconstruction.lens;
+  if (lens.mode == IntrinsicsMode::kFixed) return true;
+  if (!lens.observable) return false;
+  const auto ratio = rotation_ratio(evidence.estimate.observations);
+  return !ratio || std::abs(*ratio - 1.0) <= kMaxRotationExcess;
+}
+
+bool is_wanted(const Matrix6d& covariance, const WantedSigma& wanted) {
+  return sigma_rotation_deg(covariance) <= wanted.rotation_deg &&
+         sigma_translation_mm(covariance) <= wanted.translation_mm;
+}
+
 /// The judgement in the result's words; devices are blamed for what a motion cannot mend.
 Reason reason_after(MotionProblem problem, const Evidence& evidence) {
   if (problem != MotionProblem::kNone && looked_past_board(evidence)) {
@@ -56,6 +76,7 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
       problem == MotionProblem::kNoMotion || problem == MotionProblem::kInsufficientRotation ||
       problem == MotionProblem::kNoParallax || problem == MotionProblem::kSingleAxis;
   if (names_the_motion) return reason_of(problem);
+  if (!lens_is_known(evidence)) return Reason::kLensUnobservable;
   // At a wrong offset the rest of the judgement means nothing.
   if (!evidence.estimate.correlation && !evidence.estimate.stood_still) {
     return Reason::kClockUnstable;
@@ -66,6 +87,20 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
     return Reason::kTrackerLost;
   }
   return reason_of(problem);
+}
+
+/// The images' fault instead, where most of them showed nothing and that may be why. A scope held
+/// still is not told from a picture that stands still.
+Reason or_the_images(Reason reason, const Evidence& evidence) {
+  if (reason == Reason::kNone) return reason;
+  switch (evidence.images.prevailing()) {
+    case ImageCondition::kDark:
+      return Reason::kImageDark;
+    case ImageCondition::kFrozen:
+      return reason == Reason::kNoMotion ? reason : Reason::kImageFrozen;
+    default:
+      return reason;
+  }
 }
 
 }  // namespace
@@ -95,11 +130,16 @@ Finding conclude(const Evidence& evidence) {
   if (evidence.hand_path.empty()) return {Reason::kTrackerLost, {}};
   const std::size_t fewest = with_board(evidence) ? kFewestBoardPoses : kFewestPoses;
   if (evidence.reconstruction.frames.size() < fewest) {
-    return {reason_without_reconstruction(evidence), {}};
+    return {or_the_images(reason_without_reconstruction(evidence), evidence), {}};
   }
   if (evidence.estimate.observations.size() < fewest) return {Reason::kTrackerLost, {}};
   const Judgement judgement = judged(evidence);
-  return {reason_after(judgement.problem, evidence), judgement};
+  const Matrix6d covariance = judgement.covariance + evidence.lens_covariance;
+  MotionProblem problem = judgement.problem;
+  if (problem == MotionProblem::kNone && !is_wanted(covariance, evidence.wanted)) {
+    problem = MotionProblem::kUncertain;
+  }
+  return {or_the_images(reason_after(problem, evidence), evidence), judgement, covariance};
 }
 
 }  // namespace handeye

@@ -9,6 +9,7 @@
 #include "daemon/handeye/types.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "daemon/session/estimate.hpp"
+#include "daemon/session/image_health.hpp"
 #include "daemon/session/result.hpp"
 
 namespace handeye {
@@ -16,16 +17,19 @@ namespace handeye {
 /// Everything a verdict rests on.
 struct Evidence {
   std::int64_t frames_received{0};
+  const ImageHealth& images;
   std::span<const Pose> hand_path;  ///< room_from_hand, wherever it was tracked
   const Reconstruction& reconstruction;
   const Estimate& estimate;
-  PoseNoise noise;  ///< of the tracker
+  Matrix6d lens_covariance{Matrix6d::Zero()};  ///< what an uncertain lens adds to hand_from_eye's
+  PoseNoise noise;                             ///< of the tracker
   WantedSigma wanted;
 };
 
 struct Finding {
-  Reason reason{Reason::kNone};        ///< kNone: accept
-  std::optional<Judgement> judgement;  ///< nothing: there was no answer to judge
+  Reason reason{Reason::kNone};           ///< kNone: accept
+  std::optional<Judgement> judgement;     ///< nothing: there was no answer to judge
+  Matrix6d covariance{Matrix6d::Zero()};  ///< of the answer judged, the lens's part included
 };
 
 /// What is wrong with a motion, in the result's words; kNone for kNone.

@@ -115,6 +115,19 @@ TEST(Config, NamesLineAndKeyOfAMistake) {
   EXPECT_THAT(mistake_in("camera = 3\n"), HasSubstr("must be a section"));
 }
 
+TEST(Config, NeedsNoIntrinsicsWhereTheLensIsEstimated) {
+  const ConfigFile file("[camera]\nintrinsics_mode = 'estimate'\nwidth = 640\nheight = 480\n");
+  const Config config = load_config(file.path());
+  EXPECT_EQ(config.camera.intrinsics_mode, IntrinsicsMode::kEstimate);
+  EXPECT_TRUE(config.camera.intrinsics.empty());
+  EXPECT_THAT(mistake_in("[camera]\nintrinsics_mode = 'estimate'\nwidth = 640\n"),
+              HasSubstr("height: is needed"));
+  EXPECT_THAT(mistake_in("[camera]\nintrinsics_mode = 'refine'\n"),
+              HasSubstr("[camera] intrinsics: is missing"));
+  EXPECT_THAT(mistake_in("[camera]\nintrinsics_mode = 'guess'\nintrinsics = 'c.json'\n"),
+              HasSubstr("must be one of fixed, refine, estimate"));
+}
+
 TEST(Config, SaysThatAFileCannotBeRead) {
   EXPECT_THROW(load_config("/nonexistent/handeyed.toml"), InputError);
   EXPECT_THROW(load_config(testing::TempDir()), InputError) << "a folder";

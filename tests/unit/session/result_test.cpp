@@ -49,6 +49,21 @@ TEST(Result, SurvivesTheJourneyOverLcm) {
   EXPECT_EQ(to_json(from_message(received)), to_json(result));
 }
 
+TEST(Result, SaysWhatALensIsWorth) {
+  EXPECT_FALSE(to_json(full_result())["camera"].contains("sigma")) << "it was given";
+  CalibrationResult result = full_result();
+  result.camera_source = "estimated";
+  result.lens = LensQuality{{1.5, 2.5, 0.003, 0.004, 0.7}, true};
+  const auto camera = to_json(from_message(to_message(result)))["camera"];
+  EXPECT_EQ(camera["source"], "estimated");
+  EXPECT_EQ(camera["observable"], true);
+  EXPECT_EQ(camera["sigma"]["focal_px"], 1.5);
+  EXPECT_EQ(camera["sigma"]["centre_px"], 2.5);
+  EXPECT_EQ(camera["sigma"]["k1"], 0.003);
+  EXPECT_EQ(camera["sigma"]["k2"], 0.004);
+  EXPECT_EQ(camera["sigma"]["distortion_px"], 0.7);
+}
+
 TEST(Result, WithoutAnEstimateCarriesNoNumbersThatCouldBeMistakenForOne) {
   CalibrationResult result = full_result();
   result.has_estimate = false;

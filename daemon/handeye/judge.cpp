@@ -7,7 +7,9 @@
 
 #include <Eigen/Dense>
 
+#include "daemon/handeye/halves.hpp"
 #include "daemon/handeye/motion_facts.hpp"
+#include "daemon/handeye/parts.hpp"
 #include "daemon/handeye/usable.hpp"
 
 namespace handeye {
@@ -18,13 +20,20 @@ namespace {
 constexpr double kAboveNoise = 5.0;         // standard deviations
 constexpr double kStillRotation_deg = 0.3;  // rms of a hand that is kept still
 constexpr double kStillPath_mm = 0.75;
-constexpr double kMinRotation_deg = 2.0;  // rms; less is the wobble of a straight movement
-constexpr double kMinSecondAxis = 0.12;   // second principal turn to the first
-constexpr double kMaxPivotShare = 0.05;   // of the path left by the best fixed point: a pivot
-constexpr double kExplained = 0.5;        // of the eye's path by a fixed point: no mere noise
-constexpr double kScaleShare = 0.5;       // of the translation's variance that is the scale's
-constexpr std::size_t kMinHalf = 5;       // poses
-constexpr std::size_t kMinPoses = 5;      // fewer hardly contradict any answer
+constexpr double kMinRotation_deg = 2.0;   // rms; less is the wobble of a straight movement
+constexpr double kMinSecondAxis = 0.12;    // second principal turn to the first
+constexpr double kMaxPivotShare = 0.05;    // of the path left by the best fixed point: a pivot
+constexpr double kExplained = 0.5;         // of the eye's path by a fixed point: no mere noise
+constexpr double kScaleShare = 0.5;        // of the translation's variance that is the scale's
+constexpr std::size_t kMinHalf = 5;        // poses
+constexpr std::size_t kMinPoses = 5;       // fewer hardly contradict any answer
+constexpr double kMaxContradicting = 0.2;  // share of the poses, in parts that were left out
+
+/// Of hand and eye, over poses that share a scene.
+struct Motion {
+  MotionFacts hand;
+  MotionFacts eye;
+};
 
 bool pivots(const MotionFacts& hand, const PoseNoise& noise) {
   return hand.pivot_rms <
@@ -33,12 +42,13 @@ bool pivots(const MotionFacts& hand, const PoseNoise& noise) {
 
 /// The hand turns about the camera's centre: it pivots, and the eye's own path is no consequence of
 /// its turning, hence noise.
-bool turns_about_camera(const MotionFacts& hand, const MotionFacts& eye, const PoseNoise& noise) {
-  return pivots(hand, noise) && eye.pivot_rms >= kExplained * eye.path_rms;
+bool turns_about_camera(const Motion& motion, const PoseNoise& noise) {
+  return pivots(motion.hand, noise) && motion.eye.pivot_rms >= kExplained * motion.eye.path_rms;
 }
 
-MotionProblem classify(const MotionFacts& hand, const MotionFacts* eye, const PoseNoise& noise,
-                       bool images_without_parallax, ScaleMode scale) {
+/// `without_parallax`: the camera was seen to turn on the spot.
+MotionProblem classify(const MotionFacts& hand, const PoseNoise& noise, bool without_parallax,
+                       ScaleMode scale) {
   const Eigen::Vector3d& turn = hand.principal_rotation_rad;
   const double noise_turn = kAboveNoise * noise.hand_rotation_rad;
   const bool turns = turn.norm() > std::max(noise_turn, rad_from_deg(kStillRotation_deg));
@@ -48,60 +58,43 @@ MotionProblem classify(const MotionFacts& hand, const MotionFacts* eye, const Po
   if (turn[0] < std::max(noise_turn, rad_from_deg(kMinRotation_deg))) {
     return MotionProblem::kInsufficientRotation;
   }
-  const bool scale_is_unknown = scale == ScaleMode::kUnknown;
-  if (images_without_parallax ||
-      (scale_is_unknown && eye && turns_about_camera(hand, *eye, noise))) {
-    return MotionProblem::kNoParallax;
-  }
+  if (without_parallax) return MotionProblem::kNoParallax;
   if (turn[1] < std::max(noise_turn, kMinSecondAxis * turn[0])) return MotionProblem::kSingleAxis;
-  if (scale_is_unknown && pivots(hand, noise)) return MotionProblem::kFixedPoint;
+  if (scale == ScaleMode::kUnknown && pivots(hand, noise)) return MotionProblem::kFixedPoint;
   return MotionProblem::kNone;
+}
+
+/// Where one part's reconstruction contradicts the others', something is wrong; who is right is a
+/// question of how many.
+bool contradicts_itself(const MaximumLikelihoodResult& result) {
+  std::size_t used = 0;
+  std::size_t left_out = 0;
+  for (const PartResult& part : result.parts) {
+    if (part.poses_used > 0) {
+      used += part.poses;
+    } else if (part.poses >= kFewestPosesOfPart) {
+      left_out += part.poses;
+    }
+  }
+  return static_cast<double>(left_out) > kMaxContradicting * static_cast<double>(used + left_out);
+}
+
+/// Of the part whose scale is known best: through hand_from_eye it serves the others.
+double least_log_scale_sigma(const MaximumLikelihoodResult& result) {
+  double least = result.log_scale_sigma;
+  for (const PartResult& part : result.parts) {
+    if (part.poses_used > 0) least = std::min(least, part.log_scale_sigma);
+  }
+  return least;
 }
 
 /// Whether the unknown scale is what makes the translation uncertain.
 bool scale_is_to_blame(const MaximumLikelihoodResult& result, const JudgeOptions& options) {
   const double sigma = result.sigma_translation_mm();
   const double known = result.sigma_translation_known_scale_mm;
-  return result.log_scale_sigma > options.max_log_scale_sigma ||
+  return least_log_scale_sigma(result) > options.max_log_scale_sigma ||
          (options.solver.estimate_scale && sigma > options.wanted_translation_mm &&
           known * known < (1.0 - kScaleShare) * sigma * sigma);
-}
-
-struct HalvesComparison {
-  Vector6d difference;  ///< (w [rad], dt [mm]) from the second half's answer to the first's
-  double chi2{0};
-};
-
-struct Halves {
-  std::vector<HandEyeObservation> first;
-  std::vector<HandEyeObservation> second;
-};
-
-/// In order of time the first and the second half, which something that slipped sets apart; else
-/// every other one.
-Halves halves_of(std::span<const HandEyeObservation> observations, bool in_order_of_time) {
-  Halves halves;
-  for (std::size_t k = 0; k < observations.size(); ++k) {
-    const bool first = in_order_of_time ? k < observations.size() / 2 : k % 2 == 0;
-    (first ? halves.first : halves.second).push_back(observations[k]);
-  }
-  return halves;
-}
-
-std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
-                                               const HandEyeSolution& start,
-                                               const JudgeOptions& options) {
-  const Halves halves = halves_of(observations, options.solver.account_for_correlation);
-  const auto first = maximum_likelihood(halves.first, start, options.solver);
-  const auto second = maximum_likelihood(halves.second, start, options.solver);
-  if (!first || !second) return std::nullopt;
-  HalvesComparison comparison;
-  comparison.difference << log_so3(first->solution.hand_from_eye.linear() *
-                                   second->solution.hand_from_eye.linear().transpose()),
-      first->solution.hand_from_eye.translation() - second->solution.hand_from_eye.translation();
-  const Matrix6d covariance = first->covariance + second->covariance;
-  comparison.chi2 = comparison.difference.dot(covariance.ldlt().solve(comparison.difference));
-  return comparison;
 }
 
 /// What the answer is worth.
@@ -109,7 +102,7 @@ void weigh(std::span<const HandEyeObservation> observations, const MaximumLikeli
            const JudgeOptions& options, Judgement& judgement) {
   judgement.covariance = result.covariance;
   if (result.poses_used >= 2 * kMinHalf) {
-    if (const auto halves = compare_halves(observations, result.solution, options)) {
+    if (const auto halves = compare_halves(observations, result, options.solver)) {
       judgement.halves_chi2 = halves->chi2;
       if (halves->chi2 > options.halves_chi2_by_chance) {
         judgement.covariance += 0.25 * halves->difference * halves->difference.transpose();
@@ -123,24 +116,43 @@ bool suffices(const Matrix6d& covariance, const MaximumLikelihoodResult& result,
               const JudgeOptions& options) {
   return covariance.allFinite() && sigma_rotation_deg(covariance) <= options.wanted_rotation_deg &&
          sigma_translation_mm(covariance) <= options.wanted_translation_mm &&
-         result.log_scale_sigma <= options.max_log_scale_sigma;
+         least_log_scale_sigma(result) <= options.max_log_scale_sigma &&
+         !contradicts_itself(result);
+}
+
+/// In every part that counts.
+bool turns_about_camera(std::span<const HandEyeObservation> observations, const PoseNoise& noise) {
+  const std::vector<Part> parts = parts_of(observations);
+  return std::ranges::all_of(parts, [&](const Part& part) {
+    const bool counts =
+        part.number == parts.front().number || part.members.size() >= kFewestPosesOfPart;
+    if (!counts) return true;
+    std::vector<Pose> hand;
+    std::vector<Pose> eye;
+    for (const PosePair& pair : poses_of(observations, part)) {
+      hand.push_back(pair.room_from_hand);
+      eye.push_back(pair.eye_from_scene.inverse());
+    }
+    return turns_about_camera({motion_facts(hand), motion_facts(eye)}, noise);
+  });
 }
 
 /// What is wrong with a motion that did not suffice.
 MotionProblem problem_of(std::span<const HandEyeObservation> observations,
                          const std::optional<MaximumLikelihoodResult>& result,
                          const JudgeOptions& options) {
+  std::vector<HandEyeObservation> usable;
   std::vector<Pose> hand;
-  std::vector<Pose> eye;
   for (const HandEyeObservation& observation : observations) {
     if (!are_usable({&observation.poses, 1})) continue;
+    usable.push_back(observation);
     hand.push_back(observation.poses.room_from_hand);
-    eye.push_back(observation.poses.eye_from_scene.inverse());
   }
   const ScaleMode scale = options.solver.estimate_scale ? ScaleMode::kUnknown : ScaleMode::kKnown;
-  const MotionFacts eye_facts = motion_facts(eye);
-  const MotionProblem problem =
-      classify(motion_facts(hand), &eye_facts, options.solver.noise, false, scale);
+  const PoseNoise& noise = options.solver.noise;
+  const bool on_the_spot =
+      scale == ScaleMode::kUnknown && !usable.empty() && turns_about_camera(usable, noise);
+  const MotionProblem problem = classify(motion_facts(hand), noise, on_the_spot, scale);
   if (problem != MotionProblem::kFixedPoint && problem != MotionProblem::kNone) return problem;
   // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
   const bool pivot =
@@ -176,7 +188,7 @@ Judgement judge(std::span<const HandEyeObservation> observations,
 
 MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const PoseNoise& noise,
                                    bool images_without_parallax) {
-  return classify(motion_facts(room_from_hand), nullptr, noise, images_without_parallax,
+  return classify(motion_facts(room_from_hand), noise, images_without_parallax,
                   ScaleMode::kUnknown);
 }
 

@@ -45,7 +45,8 @@ struct Judgement {
 };
 
 /// Accepts an answer whose sigmas, the disagreement of its disjoint halves included, are within
-/// what was wanted and whose scale is observable; else names what the motion lacks. `result`: of
+/// what was wanted and whose scale is observable, unless parts with more than a fifth of the poses
+/// contradicted it and were left out; else names what the motion lacks. `result`: of
 /// the same observations; nothing when there is none. Fewer than five poses are never accepted.
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result,

@@ -37,9 +37,25 @@ struct MaximumLikelihoodOptions {
 double sigma_rotation_deg(const Matrix6d& covariance);
 double sigma_translation_mm(const Matrix6d& covariance);
 
-struct MaximumLikelihoodResult {
-  HandEyeSolution solution;
+/// What became of one part.
+struct PartResult {
+  int number{0};              ///< HandEyeObservation::part
+  std::size_t poses{0};       ///< that were given
+  std::size_t poses_used{0};  ///< without the outliers; 0: left out altogether
+  double scale_units_per_mm{1};
+  double log_scale_sigma{0};
   Pose room_from_scene{Pose::Identity()};  ///< scene in mm
+  PoseNoise noise;                         ///< as estimated, or as assumed
+  double chi2_per_dof{0};                  ///< against the assumed noise
+  /// By how much what all parts agree on fits it worse than an answer of its own does: by chance a
+  /// chi2 of as many degrees of freedom as there are common unknowns (6, 7 with the time offset).
+  double disagreement_chi2{0};
+};
+
+struct MaximumLikelihoodResult {
+  HandEyeSolution solution;                ///< its scale is that of `part`
+  int part{0};                             ///< the largest that was used
+  Pose room_from_scene{Pose::Identity()};  ///< scene of `part`, in mm
   /// To be added to the time offset that the hand poses were looked up with (first order: look up
   /// again after more than some milliseconds).
   double time_offset_correction_s{0};
@@ -52,8 +68,11 @@ struct MaximumLikelihoodResult {
   std::size_t poses_used{0};                   ///< without the outliers
   std::vector<std::size_t> rejected;           ///< the outliers: indices of observations, ascending
   double chi2_per_dof{0};                      ///< against the assumed noise
-  PoseNoise noise;                             ///< as estimated, or as assumed
+  PoseNoise noise;                             ///< of `part`; as estimated, or as assumed
   double correlation_inflation{1};             ///< of the covariance, for errors correlated in time
+  /// Likewise, for parts that agree less than chance allows.
+  double disagreement_inflation{1};
+  std::vector<PartResult> parts;  ///< the largest first
 
   double sigma_rotation_deg() const;    ///< square root of the trace of w's block
   double sigma_translation_mm() const;  ///< square root of the trace of dt's block
@@ -61,11 +80,13 @@ struct MaximumLikelihoodResult {
 
 /// Hand-eye over poses, not pairs (docs/math.md section 4): for every pose k
 ///   room_from_hand_k * hand_from_eye = room_from_scene * scene_from_eye_k (scaled by 1/s),
-/// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, room_from_scene and, if
-/// wanted, s and a correction of the time offset. `observations` in order of time, unless their
-/// correlation is not accounted for. One thread: the same answer every time. Nothing for fewer than
-/// three poses, numbers that are not finite, matrices that are not rotations or noise that is not
-/// positive.
+/// weighted by hand and eye noise, Huber's loss; unknown are hand_from_eye, for each part a
+/// room_from_scene of its own and, if wanted, s, and a correction of the time offset.
+/// `observations` in order of time, unless their correlation is not accounted for. A part that
+/// contradicts those that together have more poses is left out (part_agreement.hpp). The start's
+/// scale is the largest part's. One thread: the same answer every time. Nothing for fewer than
+/// three poses in every part, numbers that are not finite, matrices that are not rotations or noise
+/// that is not positive.
 std::optional<MaximumLikelihoodResult> maximum_likelihood(
     std::span<const HandEyeObservation> observations, const HandEyeSolution& start,
     const MaximumLikelihoodOptions& options = {});

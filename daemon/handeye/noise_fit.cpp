@@ -19,12 +19,12 @@ bool settled(const ResidualNoise::Variances& a, const ResidualNoise::Variances& 
 }  // namespace
 
 ResidualNoise::Variances fit_noise(const std::vector<Vector6d>& residuals,
-                                   const ResidualNoise& noise, int parameters, double huber,
+                                   const ResidualNoise& noise, double parameters, double huber,
                                    const ResidualNoise::Variances& assumed,
                                    const ResidualNoise::Variances& start) {
   const auto n = static_cast<double>(residuals.size());
-  if (!(6.0 * n > static_cast<double>(parameters))) return start;  // residuals say nothing
-  const double freedom = n / (n - static_cast<double>(parameters) / 6.0);
+  if (!(6.0 * n > parameters)) return start;  // residuals say nothing
+  const double freedom = n / (n - parameters / 6.0);
   const Matrix6d prior = kPriorPoses * noise.covariance(assumed);
   ResidualNoise::Variances variances = start;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {

@@ -12,7 +12,7 @@ namespace handeye {
 /// residual counts no more), by Fisher scoring from `start`. `assumed` weighs as much as one
 /// pose; the residuals are fewer by what `parameters` unknowns have absorbed.
 ResidualNoise::Variances fit_noise(const std::vector<Vector6d>& residuals,
-                                   const ResidualNoise& noise, int parameters, double huber,
+                                   const ResidualNoise& noise, double parameters, double huber,
                                    const ResidualNoise::Variances& assumed,
                                    const ResidualNoise::Variances& start);
 

@@ -13,22 +13,23 @@ namespace handeye {
 /// nothing of (docs/math.md section 10). The eye's share in the translation noise, which no
 /// residual shows, is one more source of error. Finite and huge along what the data do not
 /// determine.
-UnknownsMatrix covariance_of_unknowns(const PoseProblem& problem,
-                                      const ResidualNoise::Variances& noise, bool noise_estimated);
+PartedMatrix covariance_of_unknowns(const PoseProblem& problem, const PartNoise& noise,
+                                    bool noise_estimated);
 
 /// Standard deviation of the eye's share in the translation noise.
 double share_sigma(bool noise_estimated);
 
-/// How the gradient at the problem's unknowns changes with that share.
-UnknownsVector gradient_by_share(const PoseProblem& problem, ResidualNoise::Variances noise);
+/// How the gradient at the problem's unknowns changes with that share, the same in all parts.
+PartedVector gradient_by_share(const PoseProblem& problem, PartNoise noise);
 
-/// Widens the covariance to at least this standard deviation of the log scale, and with it what the
-/// scale explains of the others.
-void widen_scale(UnknownsMatrix& covariance, double log_scale_sigma);
+/// Widens the covariance to at least this standard deviation of the log scale that stands at
+/// `scale`, and with it what that scale explains of the others.
+void widen_scale(PartedMatrix& covariance, Eigen::Index scale, double log_scale_sigma);
 
 /// How many times fewer independent poses there are than poses in order of time: the integrated
 /// autocorrelation of the whitened residuals, summed while it is above what chance shows. The
-/// unknowns act slowly compared with it, so that the whole of it counts.
-double correlation_time(const std::vector<Vector6d>& residuals, const Matrix6d& whitening);
+/// unknowns act slowly compared with it, so that the whole of it counts. Each part's residuals are
+/// a series of their own, of one correlation.
+double correlation_time(const std::vector<std::vector<Vector6d>>& whitened_of_parts);
 
 }  // namespace handeye

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Dense>
 
 #include "daemon/handeye/residual_whitening.hpp"
-#include "daemon/handeye/scene_placement.hpp"
 
 namespace handeye {
 namespace {
@@ -26,27 +26,27 @@ double square(double x) {
 
 PoseProblem::PoseProblem(std::span<const HandEyeObservation> observations,
                          const HandEyeSolution& start, const MaximumLikelihoodOptions& options)
-    : options_(options), kept_(observations.size(), true), start_scale_(start.scale_units_per_mm) {
-  unknowns_.hand_from_eye = Eigen::Quaterniond(start.hand_from_eye.linear()).normalized();
-  unknowns_.eye_in_hand_mm = start.hand_from_eye.translation();
-  poses_.reserve(observations.size());
-  const auto n = static_cast<double>(observations.size());
-  for (const HandEyeObservation& observation : observations) {
-    const Pose& hand = observation.poses.room_from_hand;
-    const Pose eye = observation.poses.eye_from_scene.inverse();
-    poses_.push_back({Eigen::Quaterniond(hand.linear()).normalized(), hand.translation(),
-                      Eigen::Quaterniond(eye.linear()).normalized(),
-                      eye.translation() / start_scale_, observation.hand_angular_velocity,
-                      observation.hand_velocity});
-    room_centre_mm_ += poses_.back().hand_in_room_mm / n;
-    scene_centre_mm_ += poses_.back().eye_in_scene_mm / n;
+    : options_(options),
+      poses_(observations, start, options.estimate_scale),
+      unknowns_(poses_.placed(start.hand_from_eye)),
+      prior_log_scales_(poses_.parts.size(), 0.0),
+      noise_log_scales_(poses_.parts.size(), 0.0) {
+  std::vector<bool> counting(observations.size(), false);
+  for (const Part& part : parts()) {
+    const bool largest = &part == &parts().front();
+    if (!largest && part.members.size() < kFewestPosesOfPart) continue;
+    for (const std::size_t k : part.members) counting[k] = true;
   }
+  keep(std::move(counting));
+}
 
-  for (CentredPose& pose : poses_) {
-    pose.hand_in_room_mm -= room_centre_mm_;
-    pose.eye_in_scene_mm -= scene_centre_mm_;
+void PoseProblem::keep(std::vector<bool> kept) {
+  kept_ = std::move(kept);
+  poses_kept_.clear();
+  for (const Part& part : parts()) {
+    poses_kept_.push_back(static_cast<std::size_t>(
+        std::ranges::count_if(part.members, [&](std::size_t k) { return kept_[k]; })));
   }
-  place_scene(poses_, unknowns_);
 }
 
 double PoseProblem::loss(double norm) const {
@@ -54,107 +54,135 @@ double PoseProblem::loss(double norm) const {
                                 : options_.huber * (norm - 0.5 * options_.huber);
 }
 
-double PoseProblem::prior_cost(const PoseUnknowns& unknowns) const {
+double PoseProblem::prior_cost(const PartedUnknowns& unknowns) const {
   double result = 0;
-  if (options_.estimate_scale) {
-    result += 0.5 * square((unknowns.log_scale - prior_log_scale_) / options_.log_scale_prior);
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    if (!estimates(kLogScale, p)) continue;
+    const double correction = unknowns.of(p).log_scale - prior_log_scales_[p];
+    result += 0.5 * square(correction / options_.log_scale_prior);
   }
   if (options_.estimate_time_offset) {
-    result += 0.5 * square(unknowns.time_offset_s / options_.time_offset_prior_s);
+    result += 0.5 * square(unknowns.common().time_offset_s / options_.time_offset_prior_s);
   }
   return result;
 }
 
-double PoseProblem::cost(const ResidualNoise::Variances& noise,
-                         const PoseUnknowns& unknowns) const {
-  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns);
+void PoseProblem::add_cost(std::size_t part, const PartNoise& noise, const PartedUnknowns& unknowns,
+                           double& cost) const {
+  const PoseUnknowns& own = unknowns.of(part);
+  const ResidualWhitening whitening(noise[part], noise_log_scales_[part], own);
+  for (const std::size_t k : parts()[part].members) {
+    if (kept_[k]) cost += loss(whitening.value(pose_residual(poses_.poses[k], own)).norm());
+  }
+}
+
+double PoseProblem::cost_of(std::size_t part, const PartNoise& noise) const {
+  double result = 0;
+  add_cost(part, noise, unknowns_, result);
+  return result;
+}
+
+double PoseProblem::cost(const PartNoise& noise, const PartedUnknowns& unknowns) const {
   double result = prior_cost(unknowns);
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    if (kept_[k]) result += loss(whitening.value(pose_residual(poses_[k], unknowns)).norm());
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    if (in_use(p)) add_cost(p, noise, unknowns, result);
   }
   return result;
 }
 
-void PoseProblem::add_poses(const ResidualNoise::Variances& noise, const PoseUnknowns& unknowns,
-                            double& cost, UnknownsVector& gradient,
-                            UnknownsMatrix* information) const {
-  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns);
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
+void PoseProblem::add_poses(std::size_t part, const PartNoise& noise,
+                            const PartedUnknowns& unknowns, NormalEquations& equations,
+                            bool with_information) const {
+  const PoseUnknowns& own = unknowns.of(part);
+  const ResidualWhitening whitening(noise[part], noise_log_scales_[part], own);
+  UnknownsVector gradient = UnknownsVector::Zero();
+  UnknownsMatrix information = UnknownsMatrix::Zero();
+  for (const std::size_t k : parts()[part].members) {
     if (!kept_[k]) continue;
-    PoseResidual residual = pose_residual_with_jacobian(poses_[k], unknowns);
+    PoseResidual residual = pose_residual_with_jacobian(poses_.poses[k], own);
     whitening.apply(residual);
     const double norm = residual.value.norm();
     const double weight = norm <= options_.huber ? 1.0 : options_.huber / norm;
-    cost += loss(norm);
+    equations.cost += loss(norm);
     gradient.noalias() += residual.jacobian.transpose() * (weight * residual.value);
-    if (information) {
-      information->noalias() += residual.jacobian.transpose() * (weight * residual.jacobian);
+    if (with_information) {
+      information.noalias() += residual.jacobian.transpose() * (weight * residual.jacobian);
     }
+  }
+  add_part(gradient, part, equations.gradient);
+  if (with_information) add_part(information, part, equations.information);
+}
+
+void PoseProblem::add_priors(const PartedUnknowns& unknowns, NormalEquations& equations,
+                             bool with_information) const {
+  const auto add = [&](Eigen::Index index, double value, double sigma) {
+    equations.gradient[index] += value / square(sigma);
+    if (with_information) equations.information(index, index) += 1.0 / square(sigma);
+  };
+  const auto fix = [&](Eigen::Index index) {
+    equations.gradient[index] = 0;
+    if (!with_information) return;
+    equations.information.row(index).setZero();
+    equations.information.col(index).setZero();
+    equations.information(index, index) = 1;
+  };
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    for (int i = kSceneTurn; i < kTimeOffset; ++i) {
+      if (!estimates(i, p)) fix(index_of(i, p));
+    }
+    if (estimates(kLogScale, p)) {
+      add(index_of(kLogScale, p), unknowns.of(p).log_scale - prior_log_scales_[p],
+          options_.log_scale_prior);
+    }
+  }
+  if (options_.estimate_time_offset) {
+    add(kTimeOffset, unknowns.common().time_offset_s, options_.time_offset_prior_s);
+  } else {
+    fix(kTimeOffset);
   }
 }
 
-void PoseProblem::add_priors(const PoseUnknowns& unknowns, UnknownsVector& gradient,
-                             UnknownsMatrix* information) const {
-  const auto add = [&](int index, double value, double sigma) {
-    if (estimates(index)) {
-      gradient[index] += value / square(sigma);
-      if (information) (*information)(index, index) += 1.0 / square(sigma);
-    } else {
-      gradient[index] = 0;
-      if (!information) return;
-      information->row(index).setZero();
-      information->col(index).setZero();
-      (*information)(index, index) = 1;
-    }
-  };
-  add(kLogScale, unknowns.log_scale - prior_log_scale_, options_.log_scale_prior);
-  add(kTimeOffset, unknowns.time_offset_s, options_.time_offset_prior_s);
-}
-
-PoseProblem::NormalEquations PoseProblem::normal_equations(const ResidualNoise::Variances& noise,
-                                                           const PoseUnknowns& unknowns) const {
-  NormalEquations equations;
-  equations.cost = prior_cost(unknowns);
-  add_poses(noise, unknowns, equations.cost, equations.gradient, &equations.information);
-  add_priors(unknowns, equations.gradient, &equations.information);
+PoseProblem::NormalEquations PoseProblem::equations_at(const PartNoise& noise,
+                                                       const PartedUnknowns& unknowns,
+                                                       bool with_information) const {
+  const Eigen::Index size = unknowns_of_parts(parts().size());
+  NormalEquations equations{.cost = prior_cost(unknowns), .gradient = PartedVector::Zero(size)};
+  if (with_information) equations.information = PartedMatrix::Zero(size, size);
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    if (in_use(p)) add_poses(p, noise, unknowns, equations, with_information);
+  }
+  add_priors(unknowns, equations, with_information);
   return equations;
 }
 
-UnknownsVector PoseProblem::gradient(const ResidualNoise::Variances& noise,
-                                     const PoseUnknowns& unknowns) const {
-  double cost = 0;
-  UnknownsVector result = UnknownsVector::Zero();
-  add_poses(noise, unknowns, cost, result, nullptr);
-  add_priors(unknowns, result, nullptr);
-  return result;
-}
-
-void PoseProblem::minimise(const ResidualNoise::Variances& noise) {
-  prior_log_scale_ = unknowns_.log_scale;
-  if (noise_follows_) noise_log_scale_ = unknowns_.log_scale;
-  NormalEquations now = normal_equations(noise, unknowns_);
+void PoseProblem::minimise(const PartNoise& noise) {
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    prior_log_scales_[p] = unknowns_.of(p).log_scale;
+    if (noise_follows_) noise_log_scales_[p] = unknowns_.of(p).log_scale;
+  }
+  NormalEquations now = equations_at(noise, unknowns_, true);
   double damping = 0;
   for (int iteration = 0; iteration < kMaxIterations && damping < kMaxDamping; ++iteration) {
-    if (!(now.cost > kExact * static_cast<double>(poses_.size()))) break;
+    if (!(now.cost > kExact * static_cast<double>(poses_.poses.size()))) break;
     // In units of the diagonal, so that damping means the same for rad and mm.
-    const UnknownsVector unit =
+    const PartedVector unit =
         now.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    UnknownsMatrix scaled = unit.asDiagonal() * now.information * unit.asDiagonal();
+    PartedMatrix scaled = unit.asDiagonal() * now.information * unit.asDiagonal();
     scaled.diagonal().array() += damping;
-    const UnknownsVector right = -unit.cwiseProduct(now.gradient);
-    const UnknownsVector solved = scaled.ldlt().solve(right);
-    const UnknownsVector step = unit.cwiseProduct(solved);
+    const PartedVector right = -unit.cwiseProduct(now.gradient);
+    const PartedVector solved = scaled.ldlt().solve(right);
+    const PartedVector step = unit.cwiseProduct(solved);
     if (!step.allFinite()) {
       damping = std::max(10.0 * damping, kLeastDamping);
       continue;
     }
-    const double expected = 0.5 * (right.dot(solved) + damping * solved.squaredNorm());
+    const double expected = 0.5 * (dot(right, solved) + damping * dot(solved, solved));
     if (expected < kSettled * now.cost) break;
-    const PoseUnknowns next = unknowns_.moved_by(step);
+    const PartedUnknowns next = unknowns_.moved_by(step);
     const double next_cost = cost(noise, next);
     if (next_cost < now.cost) {
       unknowns_ = next;
-      now = normal_equations(noise, unknowns_);
+      now = equations_at(noise, unknowns_, true);
       damping = damping > kLeastDamping ? 0.1 * damping : 0.0;
     } else {
       damping = std::max(10.0 * damping, kLeastDamping);
@@ -162,55 +190,60 @@ void PoseProblem::minimise(const ResidualNoise::Variances& noise) {
   }
 }
 
-void PoseProblem::hold_scale(double log_scale) {
-  options_.estimate_scale = false;
+void PoseProblem::hold_scale(std::size_t part, double log_scale) {
+  held_scale_ = part;
   noise_follows_ = false;
-  unknowns_.log_scale = log_scale;
+  unknowns_.set_log_scale(part, log_scale);
 }
 
-void PoseProblem::noise_holds_at(double scale_units_per_mm) {
-  noise_log_scale_ = std::log(scale_units_per_mm / start_scale_);
+void PoseProblem::noise_holds_at(std::span<const double> scales_units_per_mm) {
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    noise_log_scales_[p] = std::log(scales_units_per_mm[p] / poses_.scales_units_per_mm[p]);
+  }
   noise_follows_ = false;
 }
 
-std::vector<double> PoseProblem::norms(const ResidualNoise::Variances& noise) const {
-  const ResidualWhitening whitening(noise, noise_log_scale_, unknowns_);
-  std::vector<double> result;
-  result.reserve(poses_.size());
-  for (const CentredPose& pose : poses_) {
-    result.push_back(whitening.value(pose_residual(pose, unknowns_)).norm());
+std::vector<double> PoseProblem::norms(const PartNoise& noise) const {
+  std::vector<double> result(poses_.poses.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    if (!in_use(p)) continue;
+    const ResidualWhitening whitening(noise[p], noise_log_scales_[p], unknowns_.of(p));
+    for (const std::size_t k : parts()[p].members) {
+      result[k] = whitening.value(pose_residual(poses_.poses[k], unknowns_.of(p))).norm();
+    }
   }
   return result;
 }
 
-std::vector<Vector6d> PoseProblem::residuals() const {
+std::vector<Vector6d> PoseProblem::residuals(std::size_t part) const {
   std::vector<Vector6d> result;
-  result.reserve(poses_.size());
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    if (kept_[k]) result.push_back(pose_residual(poses_[k], unknowns_));
+  result.reserve(poses_kept_[part]);
+  for (const std::size_t k : parts()[part].members) {
+    if (kept_[k]) result.push_back(pose_residual(poses_.poses[k], unknowns_.of(part)));
   }
   return result;
 }
 
-bool PoseProblem::estimates(int unknown) const {
-  if (unknown == kLogScale) return options_.estimate_scale;
-  return unknown != kTimeOffset || options_.estimate_time_offset;
+bool PoseProblem::estimates(int unknown, std::size_t part) const {
+  if (unknown == kTimeOffset) return options_.estimate_time_offset;
+  if (is_common(unknown)) return true;
+  const bool free = unknown != kLogScale || (options_.estimate_scale && held_scale_ != part);
+  return free && in_use(part);
 }
 
-int PoseProblem::parameters() const {
-  return 12 + (options_.estimate_scale ? 1 : 0) + (options_.estimate_time_offset ? 1 : 0);
+double PoseProblem::parameters_of(std::size_t part) const {
+  const int common = 6 + (options_.estimate_time_offset ? 1 : 0);
+  const int own = 6 + (options_.estimate_scale ? 1 : 0);
+  std::size_t kept = 0;
+  for (const std::size_t n : poses_kept_) kept += n;
+  return own + common * static_cast<double>(poses_kept_[part]) / static_cast<double>(kept);
 }
 
-HandEyeSolution PoseProblem::solution() const {
-  return {make_pose(unknowns_.hand_from_eye, unknowns_.eye_in_hand_mm),
-          options_.estimate_scale ? start_scale_ * std::exp(unknowns_.log_scale) : start_scale_};
-}
-
-Pose PoseProblem::room_from_scene() const {
-  // The scene is scaled about its origin, not about the mean of the eyes.
-  const Eigen::Vector3d centre_mm = scene_centre_mm_ * std::exp(-unknowns_.log_scale);
-  return make_pose(unknowns_.room_from_scene, unknowns_.scene_in_room_mm + room_centre_mm_ -
-                                                  unknowns_.room_from_scene * centre_mm);
+HandEyeSolution PoseProblem::solution(std::size_t part) const {
+  const PoseUnknowns& own = unknowns_.of(part);
+  const double start_scale = poses_.scales_units_per_mm[part];
+  return {make_pose(own.hand_from_eye, own.eye_in_hand_mm),
+          options_.estimate_scale ? start_scale * std::exp(own.log_scale) : start_scale};
 }
 
 }  // namespace handeye

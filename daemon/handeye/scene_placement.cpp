@@ -2,12 +2,16 @@
 #include "daemon/handeye/scene_placement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "daemon/handeye/pairing.hpp"
 
 namespace handeye {
 namespace {
 
 constexpr int kMedianRounds = 5;
+constexpr std::size_t kPathPartners = 20;  // that each pose is compared with
 
 /// Component by component.
 Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& vectors) {
@@ -22,7 +26,38 @@ Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& vectors) {
   return result;
 }
 
+/// How far the camera went between two poses.
+struct Distance {
+  double room_mm{0};
+  double scene_units{0};
+};
+
 }  // namespace
+
+double scale_of_path(std::span<const PosePair> poses, const HandEyeSolution& start) {
+  std::vector<Distance> distances;
+  for (const auto& [i, j] : spread_pairs(poses.size(), kPathPartners)) {
+    const auto in_room = [&](std::size_t k) -> Eigen::Vector3d {
+      return poses[k].room_from_hand * start.hand_from_eye.translation();
+    };
+    const auto in_scene = [&](std::size_t k) -> Eigen::Vector3d {
+      return poses[k].eye_from_scene.inverse().translation();
+    };
+    distances.push_back({(in_room(i) - in_room(j)).norm(), (in_scene(i) - in_scene(j)).norm()});
+  }
+  // Short ones are noise.
+  const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), half, distances.end(),
+                   [](const Distance& a, const Distance& b) { return a.room_mm > b.room_mm; });
+  std::vector<double> ratios;
+  for (auto distance = distances.begin(); distance != half; ++distance) {
+    ratios.push_back(distance->scene_units / distance->room_mm);
+  }
+  if (ratios.empty()) return start.scale_units_per_mm;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::isnormal(*middle) ? *middle : start.scale_units_per_mm;
+}
 
 void place_scene(std::span<const CentredPose> poses, PoseUnknowns& unknowns) {
   std::vector<Eigen::Quaterniond> rotations;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/handeye/parts.hpp"
 #include "daemon/session/stopwatch.hpp"
 
 namespace handeye {
@@ -23,7 +24,7 @@ std::optional<TimeOffset> correlate(std::span<const RegisteredFrame> frames,
   std::vector<EyeSample> eye;
   eye.reserve(frames.size());
   for (const RegisteredFrame& frame : frames) {
-    eye.push_back({frame.timestamp_ns, frame.eye_from_scene});
+    eye.push_back({frame.timestamp_ns, frame.eye_from_scene, frame.part});
   }
   return correlate_angular_speed(hand, eye);
 }
@@ -62,9 +63,19 @@ std::vector<HandEyeObservation> observe(std::span<const RegisteredFrame> frames,
     if (found.status != LookupStatus::kOk) continue;
     observations.push_back({.poses = {found.room_from_hand, frame.eye_from_scene},
                             .hand_angular_velocity = found.angular_velocity,
-                            .hand_velocity = found.velocity});
+                            .hand_velocity = found.velocity,
+                            .part = frame.part});
   }
   return observations;
+}
+
+std::vector<PosePair> poses_of_answer(const Estimate& estimate) {
+  const std::vector<Part> parts = parts_of(estimate.observations);
+  if (parts.empty()) return {};
+  const auto of_answer = std::ranges::find_if(parts, [&](const Part& part) {
+    return estimate.likelihood && part.number == estimate.likelihood->part;
+  });
+  return poses_of(estimate.observations, of_answer == parts.end() ? parts.front() : *of_answer);
 }
 
 Estimate estimate(std::span<const RegisteredFrame> frames, const PoseBuffer& hand,

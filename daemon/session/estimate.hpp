@@ -26,9 +26,14 @@ struct Estimate {
   double time_ms{0};
 };
 
-/// The hand at each frame, looked up at the given time offset; frames without are left out.
+/// The hand at each frame, of whatever part, looked up at the given time offset; frames without are
+/// left out.
 std::vector<HandEyeObservation> observe(std::span<const RegisteredFrame> frames,
                                         const PoseBuffer& hand, double time_offset_s);
+
+/// For what knows but one scene: the poses of the part whose scale the answer has, the largest one
+/// where there is no answer.
+std::vector<PosePair> poses_of_answer(const Estimate& estimate);
 
 /// Finds the time offset by correlation, solves by maximum likelihood with the offset free, and
 /// looks the hand up again until the offset stays. Without a correlation the offset is held at 0,

@@ -51,7 +51,7 @@ std::vector<Interval> intervals_of(std::span<const EyeSample> eye,
     while (to < eye.size() && seconds_between(eye[from], eye[to]) < options.interval_s) ++to;
     if (to == eye.size()) break;
     const double duration_s = seconds_between(eye[from], eye[to]);
-    if (duration_s > options.max_interval_s) continue;
+    if (duration_s > options.max_interval_s || eye[from].part != eye[to].part) continue;
     const double angle =
         rotation_angle_rad(eye[from].eye_from_scene.linear(), eye[to].eye_from_scene.linear());
     intervals.push_back({from, to, duration_s, angle / duration_s});

@@ -14,6 +14,7 @@ namespace handeye {
 struct EyeSample {
   std::int64_t timestamp_ns{0};           ///< camera stamp
   Pose eye_from_scene{Pose::Identity()};  ///< translation in scene units
+  int part{0};  ///< samples of one part share a scene; a turn is between samples of the same
 };
 
 struct TimeOffsetOptions {

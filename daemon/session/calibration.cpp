@@ -29,18 +29,9 @@ std::vector<RegisteredFrame> thinned(const std::vector<RegisteredFrame>& frames,
   return kept;
 }
 
-std::vector<PosePair> pose_pairs(const Estimate& estimate) {
-  std::vector<PosePair> pairs;
-  pairs.reserve(estimate.observations.size());
-  for (const HandEyeObservation& observation : estimate.observations) {
-    pairs.push_back(observation.poses);
-  }
-  return pairs;
-}
-
 /// Every method's answer to the same poses; the last is the one that this calibration gives.
 std::vector<MethodResult> methods_of(const Estimate& estimate, const PoseNoise& noise) {
-  const std::vector<PosePair> pairs = pose_pairs(estimate);
+  const std::vector<PosePair> pairs = poses_of_answer(estimate);
   const std::span<const Method> all = methods(estimate.scale);
   std::vector<MethodResult> results =
       compare_methods(all.first(all.size() - 1), pairs, noise, estimate.scale);

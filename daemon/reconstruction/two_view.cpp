@@ -136,6 +136,13 @@ bool same_motion(const Pose& a, const Pose& b) {
 
 }  // namespace
 
+double median_movement(const std::vector<RayPair>& pairs) {
+  std::vector<double> movements;
+  movements.reserve(pairs.size());
+  for (const RayPair& pair : pairs) movements.push_back((pair.second - pair.first).norm());
+  return median(std::move(movements));
+}
+
 RotationFit fit_rotation(const std::vector<RayPair>& pairs, double threshold_rad) {
   RotationFit fit;
   if (pairs.empty()) return fit;
@@ -160,6 +167,7 @@ RotationFit fit_rotation(const std::vector<RayPair>& pairs, double threshold_rad
   const auto inliers = std::count_if(errors.begin(), errors.end(),
                                      [&](double error) { return error <= threshold_rad; });
   fit.inlier_ratio = static_cast<double>(inliers) / static_cast<double>(pairs.size());
+  fit.residual_rad = median(std::move(errors));
   return fit;
 }
 

@@ -15,10 +15,14 @@ struct RayPair {
   Eigen::Vector2d second;
 };
 
+/// Median distance of the rays' coordinates; 0 for none.
+double median_movement(const std::vector<RayPair>& pairs);
+
 /// How well a rotation alone explains the movement between two views.
 struct RotationFit {
   Eigen::Matrix3d second_from_first{Eigen::Matrix3d::Identity()};
   double inlier_ratio{0};  ///< share of the features within the threshold
+  double residual_rad{0};  ///< median angle that it leaves
 };
 
 /// Robust rotation between the views (Kabsch on unit rays, reweighted).

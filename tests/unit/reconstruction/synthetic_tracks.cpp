@@ -33,9 +33,42 @@ struct ScenePoint {
   Eigen::Vector3d room;
   std::int64_t feature_id{-1};
   bool sliding{false};
+  bool instrument{false};  ///< `room` holds at time 0; it moves with instrument_motion
   Eigen::Vector2d slide_px{0, 0};
   Eigen::Vector2d slide_step_px{0, 0};
 };
+
+/// How the instrument has moved since time 0.
+Pose instrument_motion(double time_s) {
+  const auto pose = [](double t) {
+    Pose moved = Pose::Identity();
+    const Eigen::Vector3d middle(20.0, 5.0, 60.0);
+    moved.linear() = exp_so3(
+        0.3 * Eigen::Vector3d(std::sin(2.1 * t), std::sin(1.6 * t + 0.5), std::sin(1.3 * t + 1.0)));
+    moved.translation() =
+        middle - moved.linear() * middle +
+        8.0 * Eigen::Vector3d(std::sin(1.9 * t), std::sin(1.5 * t + 0.8), 0.5 * std::sin(1.2 * t));
+    return moved;
+  };
+  return pose(time_s) * pose(0.0).inverse();
+}
+
+/// Adds the instrument in front of a third of the view, so many points that of the visible ones the
+/// share is its own, and mixes all: the first visible ones become features first.
+void add_instrument(double share, std::vector<ScenePoint>& points, std::mt19937& random) {
+  constexpr double kVisibleSurfacePoints = 150.0;
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const int count = static_cast<int>(kVisibleSurfacePoints * share / (1.0 - share));
+  for (int i = 0; i < count; ++i) {
+    ScenePoint point;
+    point.instrument = true;
+    const double x = 14.0 + 12.0 * uniform(random);
+    const double y = 22.0 * uniform(random);
+    point.room = {x, y, 58.0 + 6.0 * uniform(random)};
+    const auto position = static_cast<std::ptrdiff_t>(random() % (points.size() + 1));
+    points.insert(points.begin() + position, point);
+  }
+}
 
 std::vector<ScenePoint> make_surface(double relief_mm, std::mt19937& random) {
   std::uniform_real_distribution<double> across(-130.0, 130.0);
@@ -69,14 +102,54 @@ Motion turning_only() {
   };
 }
 
+Motion sideways() {
+  return [](double time_s) {
+    Pose room_from_eye = Pose::Identity();
+    room_from_eye.linear() = exp_so3(0.02 * Eigen::Vector3d(std::sin(time_s), std::cos(time_s), 0));
+    room_from_eye.translation() = free_hand()(time_s).translation();
+    return room_from_eye;
+  };
+}
+
+Motion forward() {
+  return [](double time_s) {
+    Pose room_from_eye = Pose::Identity();
+    room_from_eye.linear() =
+        exp_so3(0.02 * Eigen::Vector3d(std::sin(3.0 * time_s), std::sin(2.0 * time_s), 0.0));
+    room_from_eye.translation() =
+        Eigen::Vector3d(0.5 * std::sin(2.5 * time_s), 0.5 * std::sin(3.5 * time_s),
+                        15.0 - 15.0 * std::cos(0.5 * kPi * time_s));
+    return room_from_eye;
+  };
+}
+
+Motion orbit() {
+  return [](double time_s) {
+    const Eigen::Vector3d target(0.0, 0.0, 80.0);
+    Pose room_from_eye = Pose::Identity();
+    room_from_eye.linear() = turn(time_s);
+    room_from_eye.translation() = target - room_from_eye.linear() * target;
+    return room_from_eye;
+  };
+}
+
+Motion nearly_turning(double share) {
+  return [share](double time_s) {
+    Pose room_from_eye = free_hand()(time_s);
+    room_from_eye.translation() *= share;
+    return room_from_eye;
+  };
+}
+
 SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion) {
   std::mt19937 random(options.seed);
   std::normal_distribution<double> noise(0.0, options.noise_px);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   SyntheticTracks tracks;
-  tracks.camera = endoscope();
+  tracks.camera = options.camera.value_or(endoscope());
   const CameraModel& camera = tracks.camera;
   std::vector<ScenePoint> points = make_surface(options.relief_mm, random);
+  if (options.instrument_share > 0) add_instrument(options.instrument_share, points, random);
   std::int64_t next_id = 0;
   for (int f = 0; f < options.frames; ++f) {
     const double time_s = f / options.rate_hz;
@@ -86,8 +159,12 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
     frame.index = f;
     frame.timestamp_ns = static_cast<std::int64_t>(std::llround(1e9 * time_s));
     std::vector<ScenePoint*> candidates;
+    const Pose instrument = instrument_motion(time_s);
+    const auto seen_at = [&](const ScenePoint& point) -> Eigen::Vector3d {
+      return eye_from_room * (point.instrument ? instrument * point.room : point.room);
+    };
     for (ScenePoint& point : points) {
-      const Eigen::Vector3d eye = eye_from_room * point.room;
+      const Eigen::Vector3d eye = seen_at(point);
       Eigen::Vector2d pixel = Eigen::Vector2d::Constant(-1);
       if (eye.z() > 1) pixel = project<double>(camera, eye) + point.slide_px;
       // Beyond about 45 degrees the polynomial of the lens folds back into the image.
@@ -114,7 +191,7 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
       point->feature_id = next_id++;
       point->sliding = uniform(random) < options.outlier_tracks;
       point->slide_step_px = {2.0 * uniform(random) - 1.0, 2.0 * uniform(random) - 1.0};
-      const Eigen::Vector2d pixel = project<double>(camera, eye_from_room * point->room);
+      const Eigen::Vector2d pixel = project<double>(camera, seen_at(*point));
       frame.observations.push_back(
           {point->feature_id, pixel + Eigen::Vector2d(noise(random), noise(random))});
     }

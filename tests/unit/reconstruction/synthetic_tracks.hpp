@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "daemon/geometry/camera_model.hpp"
@@ -20,8 +21,10 @@ struct SyntheticOptions {
   double death_rate{0.01};      ///< features lost per frame
   double relief_mm{8};          ///< half the depth of the surface's waves; 0: a plane
   int max_features{250};
-  int blind_frame{-1};  ///< all tracks are lost before this frame
+  double instrument_share{0};  ///< of the visible features: on a body that moves by itself
+  int blind_frame{-1};         ///< all tracks are lost before this frame
   unsigned seed{1};
+  std::optional<CameraModel> camera;  ///< nothing: an endoscope's
 };
 
 /// room_from_eye at a time [s].
@@ -33,6 +36,18 @@ Motion free_hand();
 
 /// The same turns about the camera's centre, which stays where it is.
 Motion turning_only();
+
+/// Free-hand shifts with hardly a turn: parallel views.
+Motion sideways();
+
+/// Towards the surface, 80 mm down to 50 within 2 s, with a slight tremble.
+Motion forward();
+
+/// Around a point of the surface, looking at it.
+Motion orbit();
+
+/// The free-hand turns with shifts of `share` of the free hand's: nearly pure rotation.
+Motion nearly_turning(double share);
 
 struct SyntheticTracks {
   CameraModel camera;

@@ -20,7 +20,9 @@ constexpr double kBrightQuantile = 0.95;
 constexpr int kTooDark = 40;  ///< grey; an image whose bright parts are darker tells nothing
 constexpr double kDarkFraction =
     0.1;                        ///< surroundings are darker than this share of the bright parts
-constexpr int kDarkFloor = 10;  ///< grey; black level and noise of real cameras
+constexpr int kDarkFloor = 10;  ///< grey; noise of real cameras
+constexpr double kBlackQuantile = 0.01;
+constexpr int kHighestBlack = 24;  ///< grey; black is 16 in video, and glows a little
 /// Of the disc's radius: the rim's glow grows with the disc.
 constexpr double kErodeFraction = 0.04;
 /// Share of the images that must show a pixel lit: a flare or two do not widen the field.
@@ -94,12 +96,15 @@ bool FieldOfView::vote(const cv::Mat& grey) {
     brightness_ = cv::Mat1f::zeros(small_.size());
     votes_ = 0;
   }
-  const int threshold = std::max(kDarkFloor, static_cast<int>(kDarkFraction * bright_level));
+  const int black = std::min(kHighestBlack, grey_quantile(small_, kBlackQuantile));
+  const int threshold =
+      std::max(kDarkFloor, black + static_cast<int>(kDarkFraction * (bright_level - black)));
   for (int y = 0; y < small_.rows; ++y) {
     const auto* row = small_.ptr<std::uint8_t>(y);
     for (int x = 0; x < small_.cols; ++x) {
       lit_votes_(y, x) += row[x] > threshold ? 1.0F : 0.0F;
-      brightness_(y, x) += static_cast<float>(row[x]) / static_cast<float>(bright_level);
+      brightness_(y, x) += static_cast<float>(std::max(0, row[x] - black)) /
+                           static_cast<float>(bright_level - black);
     }
   }
   ++votes_;

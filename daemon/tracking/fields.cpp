@@ -8,7 +8,7 @@
 namespace handeye {
 namespace {
 
-constexpr int kLines = 48;       ///< odd lines looked at, or a few more
+constexpr int kLines = 64;       ///< odd lines looked at, or a few more
 constexpr int kCellRows = 6;     ///< cells down the image
 constexpr int kCellColumns = 8;  ///< and across
 constexpr int kTogether =
@@ -19,10 +19,14 @@ constexpr int kLargestStep = 48;
 /// Cells of less contrast than this say nothing [grey levels, rms per pixel].
 constexpr double kLeastContrast = 1.0;
 constexpr std::size_t kFewestCells = 6;
+/// A texture is fine enough to deceive if its steps agree less than this with wider ones (0.15: a
+/// period of seven lines), unless it hardly changes down the image.
+constexpr double kResolved = 0.15;
+constexpr double kLevelTexture = 0.1;
 
-constexpr double kClearlyExplained = 0.35;
+constexpr double kClearlyExplained = 0.25;
 constexpr double kClearMovement_px = 0.35;
-// Clear images in excess of unclear ones that settle it: one may be an accident.
+// Clear images in excess of unclear ones that settle it: one or two may be an accident.
 constexpr int kSettled = 3;
 
 /// Sums of `together` pixels of a line.
@@ -54,6 +58,12 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
+/// Lines finer than one field can show look like a movement: there the steps over six lines are
+/// small beside, or contrary to, those over two.
+bool CombingMeter::Cell::is_resolved() const {
+  return yy < kLevelTexture * xx || yw > kResolved * yy;
+}
+
 bool Combing::is_clear() const {
   return explained > kClearlyExplained && movement_px > kClearMovement_px;
 }
@@ -64,11 +74,13 @@ Combing CombingMeter::measure(const cv::Mat& grey) {
   const int columns = grey.cols / together;
   if (columns < 4 * kCellColumns || grey.rows < 4 * kCellRows) return {};
   cells_.assign(static_cast<std::size_t>(kCellRows * kCellColumns), {});
-  for (std::vector<int>* line : {&above_, &here_, &below_}) {
+  for (std::vector<int>* line : {&far_above_, &above_, &here_, &below_, &far_below_}) {
     line->resize(static_cast<std::size_t>(columns));
   }
-  // Between even lines, in the middles of equal shares of the image.
-  for (int y = (step / 2) | 1; y + 1 < grey.rows; y += step) {
+  // Between even lines, one in each equal share of the image, not always at the same place of it:
+  // a texture of lines must not meet them in step.
+  for (int top = 2, line = 0; top + step + 3 < grey.rows; top += step, ++line) {
+    const int y = top + (step * (3 * line % 5) / 5 | 1);
     const int cell_row = y * kCellRows / grey.rows;
     add_line(grey, y, &cells_[static_cast<std::size_t>(cell_row * kCellColumns)]);
   }
@@ -79,7 +91,10 @@ Combing CombingMeter::measure(const cv::Mat& grey) {
   for (const Cell& cell : cells_) {
     missing += cell.ee;
     const double determinant = cell.xx * cell.yy - cell.xy * cell.xy;
-    if (cell.xx + cell.yy < least || determinant <= 1e-3 * cell.xx * cell.yy) continue;
+    if (cell.xx + cell.yy < least || determinant <= 1e-3 * cell.xx * cell.yy ||
+        !cell.is_resolved()) {
+      continue;
+    }
     const double x = (cell.yy * cell.xe - cell.xy * cell.ye) / determinant;
     const double y = (cell.xx * cell.ye - cell.xy * cell.xe) / determinant;
     explained += x * cell.xe + y * cell.ye;
@@ -95,6 +110,8 @@ void CombingMeter::add_line(const cv::Mat& grey, int y, Cell* cells) {
   sum_pixels(grey, y - 1, together, above_);
   sum_pixels(grey, y, together, here_);
   sum_pixels(grey, y + 1, together, below_);
+  sum_pixels(grey, y - 3, together, far_above_);
+  sum_pixels(grey, y + 3, together, far_below_);
   const int largest = kLargestStep * together;
   for (int cell = 0; cell < kCellColumns; ++cell) {
     const int first = std::max(1, cell * columns / kCellColumns);
@@ -111,6 +128,7 @@ void CombingMeter::add_line(const cv::Mat& grey, int y, Cell* cells) {
       sum.xe += across * error;
       sum.ye += down * error;
       sum.ee += error * error;
+      sum.yw += down * (far_below_[i] - far_above_[i]) / 6.0;
     }
     cells[cell].xx += sum.xx;
     cells[cell].xy += sum.xy;
@@ -118,6 +136,7 @@ void CombingMeter::add_line(const cv::Mat& grey, int y, Cell* cells) {
     cells[cell].xe += sum.xe;
     cells[cell].ye += sum.ye;
     cells[cell].ee += sum.ee;
+    cells[cell].yw += sum.yw;
   }
 }
 
@@ -137,14 +156,8 @@ void keep_even_field(const cv::Mat& grey, cv::Mat& progressive) {
 }
 
 const cv::Mat& FieldSeparation::take(const cv::Mat& grey) {
-  bool clear = false;
-  if (!interlaced_) {
-    const Combing combing = meter_.measure(grey);
-    clear = combing.is_clear();
-    weigh(combing);
-  }
-  used_one_field_ = interlaced_ || clear;
-  if (!used_one_field_) return grey;
+  if (!interlaced_) weigh(meter_.measure(grey));
+  if (!interlaced_) return grey;
   keep_even_field(grey, progressive_);
   return progressive_;
 }

@@ -31,11 +31,15 @@ class CombingMeter {
   /// Sums of the normal equations of one cell's movement.
   struct Cell {
     double xx{0}, xy{0}, yy{0}, xe{0}, ye{0}, ee{0};
+    double yw{0};  ///< steps down the image over two lines times those over six
+
+    bool is_resolved() const;
   };
   void add_line(const cv::Mat& grey, int y, Cell* cells);
 
   std::vector<Cell> cells_;
-  std::vector<int> above_, here_, below_;  ///< lines, a few pixels together
+  /// Lines, a few pixels together: the odd one, and the even ones about it.
+  std::vector<int> above_, here_, below_, far_above_, far_below_;
   std::vector<double> movements_;
 };
 
@@ -52,9 +56,9 @@ class FieldSeparation {
   /// The image to work on: `grey` itself, or its even field. Valid until the next call.
   const cv::Mat& take(const cv::Mat& grey);
 
-  /// Of the last image only one field was used. As long as the camera stands still there is no
-  /// telling, nor need; from the first clear image on every image is.
-  bool used_one_field() const { return used_one_field_; }
+  /// Whether only one field of the last image was used. While the camera stands still there is no
+  /// telling, nor need; once some images were clear every one is taken for interlaced.
+  bool used_one_field() const { return interlaced_; }
 
  private:
   void weigh(const Combing& combing);
@@ -63,7 +67,6 @@ class FieldSeparation {
   cv::Mat progressive_;
   int evidence_{0};
   bool interlaced_{false};
-  bool used_one_field_{false};
 };
 
 }  // namespace handeye

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/reconstruction/self_calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
 #include "daemon/reconstruction/frame_record.hpp"
+#include "daemon/reconstruction/lens_challenge.hpp"
 #include "daemon/reconstruction/lens_fit.hpp"
 #include "daemon/reconstruction/lens_information.hpp"
 #include "daemon/reconstruction/lens_scene.hpp"
 #include "daemon/reconstruction/lens_start.hpp"
+#include "daemon/reconstruction/projection.hpp"
 
 namespace handeye {
 namespace {
@@ -23,6 +26,41 @@ constexpr int kMaxRounds = 5;
 constexpr double kBeginAgainPx = 4.0;
 constexpr double kSettledPx = 0.05;
 constexpr int kMaxKeyframes = 120;
+/// So many show a valley as well as all do.
+constexpr int kChallengeKeyframes = 24;
+/// Known worse than this a lens is not known: poses under it would be off by as much.
+constexpr double kMaxFocalSigma = 0.03;
+constexpr double kMaxDistortionSigmaPx = 5.0;  ///< of an image 640 px wide
+
+/// One standard deviation of the lens along each of its principal directions.
+std::vector<LensVector> principal_changes(const LensMatrix& covariance) {
+  const LensVector sigma = covariance.diagonal().cwiseSqrt();
+  const LensMatrix correlation =
+      sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<LensMatrix> eigen(correlation);
+  std::vector<LensVector> changes;
+  for (int i = 0; i < kLensParameters; ++i) {
+    const double length = std::sqrt(std::max(0.0, eigen.eigenvalues()[i]));
+    changes.emplace_back(length * sigma.cwiseProduct(eigen.eigenvectors().col(i)));
+  }
+  return changes;
+}
+
+/// The scene's keyframes as they are in `frames`, moved by what they do when the lens changes.
+std::vector<RegisteredFrame> shifted(const std::vector<RegisteredFrame>& frames, const Scene& scene,
+                                     const LensInformation& information, const LensVector& change) {
+  std::vector<RegisteredFrame> result;
+  for (std::size_t k = 0; k < scene.keyframes.size(); ++k) {
+    const auto frame = std::ranges::lower_bound(frames, scene.keyframes[k].frame_index, {},
+                                                &RegisteredFrame::index);
+    if (frame == frames.end() || frame->index != scene.keyframes[k].frame_index) continue;
+    const Vector6d moved = information.pose_by_lens[k] * change;
+    RegisteredFrame& there = result.emplace_back(*frame);
+    there.eye_from_scene.linear() = exp_so3(moved.head<3>()) * there.eye_from_scene.linear();
+    there.eye_from_scene.translation() += moved.tail<3>();
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -100,11 +138,11 @@ Reconstruction SelfCalibration::settle() {
   return reconstruction;
 }
 
-void SelfCalibration::judge_lens(Reconstruction& reconstruction) {
+void SelfCalibration::judge_lens(Reconstruction& reconstruction) const {
   Lens& lens = reconstruction.lens;
   lens.observable = false;
   if (reconstruction.frames.empty()) return;
-  Scene scene = scene_of(camera_, reconstruction, frames_, kMaxKeyframes, options_);
+  const Scene scene = scene_of(camera_, reconstruction, frames_, kMaxKeyframes, options_);
   const auto information =
       lens_information(camera_, {whole_lens(), prior_}, options_.robust_px, scene);
   if (!information) return;
@@ -115,7 +153,14 @@ void SelfCalibration::judge_lens(Reconstruction& reconstruction) {
                 .k1 = sigma[kK1],
                 .k2 = sigma[kK2],
                 .distortion_px = distortion_sigma_px(camera_, covariance)};
-  lens.observable = true;
+  lens.observable = lens.sigma.focal_px <= kMaxFocalSigma * focal_px(camera_) &&
+                    lens.sigma.distortion_px <= kMaxDistortionSigmaPx * camera_.width / 640.0 &&
+                    refutes_other_lenses(
+                        camera_, lens.sigma.focal_px, prior_, options_,
+                        scene_of(camera_, reconstruction, frames_, kChallengeKeyframes, options_));
+  for (const LensVector& change : principal_changes(covariance)) {
+    lens.shifted_keyframes.push_back(shifted(reconstruction.frames, scene, *information, change));
+  }
 }
 
 }  // namespace handeye

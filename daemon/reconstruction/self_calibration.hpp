@@ -36,7 +36,7 @@ class SelfCalibration {
   void begin_again(const CameraModel& camera);
   void look_for_start();
   Reconstruction settle();
-  void judge_lens(Reconstruction& reconstruction);
+  void judge_lens(Reconstruction& reconstruction) const;
 
   IntrinsicsMode mode_;
   ReconstructionOptions options_;

@@ -110,11 +110,14 @@ StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions&
   const auto chosen = choose_start(candidates);
   if (!chosen || candidates[*chosen].inlier_ratio < kMinInlierRatio ||
       candidates[*chosen].parallax_rad < min_parallax_rad ||
-      rest_only_turns(candidates[*chosen].scene, 2.0 * threshold_rad)) {
+      contradicted(candidates[*chosen].scene, 2.0 * threshold_rad)) {
     return attempt;
   }
   StartCandidate complete = complete_candidate(camera, options, window, candidates[*chosen]);
-  if (complete.scene.point_count() < options.min_common_features) return attempt;
+  if (complete.scene.point_count() < options.min_common_features ||
+      contradicted(complete.scene, 2.0 * threshold_rad)) {
+    return attempt;
+  }
   attempt.state = ReconstructionState::kTracking;
   attempt.method = complete.method;
   attempt.scene = std::move(complete.scene);

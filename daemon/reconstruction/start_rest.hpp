@@ -5,10 +5,10 @@
 
 namespace handeye {
 
-/// Whether the features that a scene leaves unexplained obey one rotation of the camera. Then they
-/// may well be the scene, seen by a camera that only turns or stands, and what was reconstructed is
-/// an instrument that moves before it: no start, however well it fits.
-/// Features too far off to have a point obey the camera's own rotation: they do not count.
-bool rest_only_turns(const Scene& scene, double threshold_rad);
+/// Whether a scene, between its first, middle and last keyframe, explains too few of the features
+/// that the pictures show, is contradicted by too many, or by some that obey one rotation of the
+/// camera. They may well be the scene then, seen by a camera that only turns or stands, and what
+/// was reconstructed an instrument that moves before it: no start, however well it fits.
+bool contradicted(const Scene& scene, double threshold_rad);
 
 }  // namespace handeye

@@ -42,16 +42,6 @@ RayPoints to_points(const std::vector<RayPair>& pairs) {
   return points;
 }
 
-/// Sampson distance of a pair from its epipolar line [normalised units].
-double epipolar_distance(const Eigen::Matrix3d& essential, const RayPair& pair) {
-  const Eigen::Vector3d first = pair.first.homogeneous();
-  const Eigen::Vector3d second = pair.second.homogeneous();
-  const Eigen::Vector3d line_second = essential * first;
-  const Eigen::Vector3d line_first = essential.transpose() * second;
-  const double scale = line_second.head<2>().squaredNorm() + line_first.head<2>().squaredNorm();
-  return std::abs(second.dot(line_second)) / std::sqrt(std::max(scale, 1e-18));
-}
-
 /// Whether the rays meet in front of both cameras. Near-parallel rays count as in front: their
 /// intersection is far away on the side the noise chose.
 bool in_front(const Pose& second_from_first, const Eigen::Vector3d& first,
@@ -71,11 +61,9 @@ TwoViewMotion judge(const std::vector<RayPair>& pairs, const Pose& second_from_f
                     double threshold) {
   TwoViewMotion motion;
   motion.second_from_first = second_from_first;
-  const Eigen::Matrix3d essential =
-      skew(second_from_first.translation()) * second_from_first.linear();
   std::vector<double> parallaxes;
   for (const RayPair& pair : pairs) {
-    if (epipolar_distance(essential, pair) > threshold) continue;
+    if (epipolar_distance(second_from_first, pair) > threshold) continue;
     const Eigen::Vector3d first = pair.first.homogeneous().normalized();
     const Eigen::Vector3d second = pair.second.homogeneous().normalized();
     if (!in_front(second_from_first, first, second)) continue;
@@ -135,6 +123,17 @@ bool same_motion(const Pose& a, const Pose& b) {
 }
 
 }  // namespace
+
+double epipolar_distance(const Pose& second_from_first, const RayPair& pair) {
+  const Eigen::Matrix3d essential =
+      skew(second_from_first.translation()) * second_from_first.linear();
+  const Eigen::Vector3d first = pair.first.homogeneous();
+  const Eigen::Vector3d second = pair.second.homogeneous();
+  const Eigen::Vector3d line_second = essential * first;
+  const Eigen::Vector3d line_first = essential.transpose() * second;
+  const double scale = line_second.head<2>().squaredNorm() + line_first.head<2>().squaredNorm();
+  return std::abs(second.dot(line_second)) / std::sqrt(std::max(scale, 1e-18));
+}
 
 double median_movement(const std::vector<RayPair>& pairs) {
   std::vector<double> movements;

@@ -28,6 +28,9 @@ struct RotationFit {
 /// Robust rotation between the views (Kabsch on unit rays, reweighted).
 RotationFit fit_rotation(const std::vector<RayPair>& pairs, double threshold_rad);
 
+/// Sampson distance of a pair from the epipolar lines of a motion [normalised units].
+double epipolar_distance(const Pose& second_from_first, const RayPair& pair);
+
 /// A motion that the two views allow.
 struct TwoViewMotion {
   Pose second_from_first{Pose::Identity()};  ///< translation of length 1

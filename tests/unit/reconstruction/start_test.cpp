@@ -8,6 +8,7 @@
 #include "daemon/reconstruction/start_choice.hpp"
 #include "daemon/reconstruction/start_consensus.hpp"
 #include "daemon/reconstruction/start_factorisation.hpp"
+#include "daemon/reconstruction/start_search.hpp"
 #include "daemon/reconstruction/start_two_views.hpp"
 #include "tests/unit/reconstruction/synthetic_tracks.hpp"
 
@@ -140,6 +141,24 @@ TEST(SceneStart, RefusesATurningOrStandingScopeWithAMovingInstrument) {
       return test::turning_only()((1.0 - still) * time_s);
     };
     EXPECT_EQ(try_starts(motion, options, 6).refused, 6) << "still " << still;
+  }
+}
+
+TEST(SceneStart, IsNotFoundInTheWholeSequenceOfATurningScopeWithAnInstrument) {
+  for (const unsigned seed : {2U, 7U, 8U}) {
+    SyntheticOptions options;
+    options.instrument_share = seed == 2 ? 0.2 : 0.33;
+    options.seed = seed;
+    options.frames = 150;
+    const SyntheticTracks tracks = test::synthesize(
+        options, [seed](double time_s) { return test::turning_only()(time_s + 0.37 * seed); });
+    const ReconstructionOptions reconstruction;
+    StartSearch search(tracks.camera, reconstruction);
+    std::vector<FrameRecord> seen;
+    for (FrameRecord& record : records_of(tracks)) {
+      seen.push_back(std::move(record));
+      ASSERT_FALSE(search.look(seen).scene) << "seed " << seed << " frame " << seen.size();
+    }
   }
 }
 

@@ -56,6 +56,20 @@ TEST(PoseError, SaysHowFarOffPosesAre) {
   EXPECT_NEAR(error.rotation_rms_deg, std::sqrt(900.0 / 50 + 3 * 0.04), 0.4);
 }
 
+TEST(PoseError, TurningIsWhatOrientationsAloneSay) {
+  RandomStream random(5, Purpose::kMotion);
+  std::vector<PosePair> pairs = similar_pairs(random, 5);
+  // One and the same turn of all orientations, which the positions do not share.
+  const Eigen::Matrix3d turn = exp_so3(rad_from_deg(2.0) * Eigen::Vector3d::UnitX());
+  for (PosePair& pair : pairs) {
+    pair.estimated_scene_from_eye.linear() = turn * pair.estimated_scene_from_eye.linear();
+  }
+  const PoseError error = pose_error(pairs, 80).value();
+  EXPECT_NEAR(error.rotation_rms_deg, 2, 1e-5);
+  EXPECT_LT(error.turning_worst_deg, 1e-5);
+  EXPECT_LT(error.position_worst, 1e-9);
+}
+
 TEST(PoseError, AMirroredSceneIsAnError) {
   RandomStream random(3, Purpose::kMotion);
   std::vector<PosePair> pairs = similar_pairs(random, 1);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -29,6 +31,29 @@ bool on_a_line(const Eigen::Matrix3Xd& points) {
   return !(spread[1] > kFlatness * kFlatness * spread[2]);
 }
 
+/// The rotation that takes the estimated orientations to the true ones, in the mean.
+Eigen::Matrix3d mean_turn(std::span<const PosePair> pairs) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const PosePair& pair : pairs) {
+    sum += pair.true_scene_from_eye.linear() * pair.estimated_scene_from_eye.linear().transpose();
+  }
+  return nearest_rotation(sum);
+}
+
+/// Root mean square and largest angle between true and turned estimated orientations [deg].
+std::pair<double, double> rotation_errors_deg(std::span<const PosePair> pairs,
+                                              const Eigen::Matrix3d& turn) {
+  double squares = 0;
+  double worst = 0;
+  for (const PosePair& pair : pairs) {
+    const double angle_deg = deg_from_rad(rotation_angle_rad(
+        pair.true_scene_from_eye.linear(), turn * pair.estimated_scene_from_eye.linear()));
+    squares += angle_deg * angle_deg;
+    worst = std::max(worst, angle_deg);
+  }
+  return {std::sqrt(squares / static_cast<double>(pairs.size())), worst};
+}
+
 }  // namespace
 
 std::optional<PoseError> pose_error(std::span<const PosePair> pairs, double scene_distance_mm) {
@@ -43,23 +68,19 @@ std::optional<PoseError> pose_error(std::span<const PosePair> pairs, double scen
   error.mm_per_unit = std::cbrt(scaled_rotation.determinant());
   const Eigen::Matrix3d rotation = scaled_rotation / error.mm_per_unit;
 
-  double rotation_squares = 0;
-  double position_squares = 0;
+  std::tie(error.rotation_rms_deg, error.rotation_worst_deg) = rotation_errors_deg(pairs, rotation);
+  std::tie(error.turning_rms_deg, error.turning_worst_deg) =
+      rotation_errors_deg(pairs, mean_turn(pairs));
+  double squares = 0;
   for (const PosePair& pair : pairs) {
-    const double angle_deg = deg_from_rad(rotation_angle_rad(
-        pair.true_scene_from_eye.linear(), rotation * pair.estimated_scene_from_eye.linear()));
     const Eigen::Vector3d aligned = scaled_rotation * pair.estimated_scene_from_eye.translation() +
                                     similarity.topRightCorner<3, 1>();
     const double distance =
         (aligned - pair.true_scene_from_eye.translation()).norm() / scene_distance_mm;
-    rotation_squares += angle_deg * angle_deg;
-    position_squares += distance * distance;
-    error.rotation_worst_deg = std::max(error.rotation_worst_deg, angle_deg);
+    squares += distance * distance;
     error.position_worst = std::max(error.position_worst, distance);
   }
-  const auto count = static_cast<double>(pairs.size());
-  error.rotation_rms_deg = std::sqrt(rotation_squares / count);
-  error.position_rms = std::sqrt(position_squares / count);
+  error.position_rms = std::sqrt(squares / static_cast<double>(pairs.size()));
   return error;
 }
 

@@ -20,6 +20,9 @@ struct PoseError {
   double rotation_rms_deg{0}, rotation_worst_deg{0};
   double position_rms{0}, position_worst{0};  ///< of the scene's distance
   double mm_per_unit{0};                      ///< the similarity's scale
+  /// Rotation errors after the rotation that fits the orientations best instead of the positions:
+  /// what is left of them where positions near one line leave the similarity uncertain.
+  double turning_rms_deg{0}, turning_worst_deg{0};
 };
 
 /// Aligns the estimated eye positions with the true ones by the similarity of least squares

@@ -54,9 +54,10 @@ TEST_P(SequencesTest, EveryCameraPoseIsRight) {
   ASSERT_TRUE(error.has_value());
   fmt::print(
       "{}: {} of {} frames; rotation {:.3f} deg rms, {:.3f} worst; position {:.3f} % rms, {:.3f} "
-      "worst\n",
+      "worst; orientations alone {:.3f} deg rms, {:.3f} worst\n",
       GetParam(), outcome.registered.size(), outcome.frames, error->rotation_rms_deg,
-      error->rotation_worst_deg, 100 * error->position_rms, 100 * error->position_worst);
+      error->rotation_worst_deg, 100 * error->position_rms, 100 * error->position_worst,
+      error->turning_rms_deg, error->turning_worst_deg);
   EXPECT_LT(error->rotation_rms_deg, 0.15);
   EXPECT_LT(error->position_rms, 0.005);
   EXPECT_LT(error->rotation_worst_deg, 0.15);

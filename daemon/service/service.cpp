@@ -218,6 +218,10 @@ status_t Service::status_message() {
   status.uptime_s = seconds_between(started_ns_, now_ns);
   status.tracker = tracker_reporter_.report(tracker_.health(), now_ns);
   status.camera = camera_reporter_.report(camera_.health(), now_ns);
+  const std::string_view picture = picture_text(vision_.picture());
+  if (status.camera.state == device_status_t::STREAMING && !picture.empty()) {
+    status.camera.text += fmt::format(": {}", picture);
+  }
   status.tracked_bodies = tracker_.tracked_bodies();
   write_session(session_, status);
   status.sigma_rotation_deg = -1;

@@ -144,4 +144,22 @@ void write_progress(const CalibrationProgress& progress, const StartOptions& sta
   status.guidance = progress.guidance;
 }
 
+std::string_view picture_text(ImageCondition condition) {
+  switch (condition) {
+    case ImageCondition::kGood:
+      break;
+    case ImageCondition::kDark:
+      return "the picture is dark";
+    case ImageCondition::kBright:
+      return "the picture is burnt out";
+    case ImageCondition::kFrozen:
+      return "the picture is frozen";
+    case ImageCondition::kInterlaced:
+      return "interlaced, one field is used";
+    case ImageCondition::kBlurred:
+      return "the picture is blurred";
+  }
+  return "";
+}
+
 }  // namespace handeye

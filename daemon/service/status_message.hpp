@@ -2,12 +2,14 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include <handeye/request_t.hpp>
 #include <handeye/status_t.hpp>
 
 #include "daemon/session/calibration.hpp"
 #include "daemon/session/session.hpp"
+#include "daemon/tracking/image_condition.hpp"
 
 namespace handeye {
 
@@ -21,5 +23,8 @@ void write_session(const Session& session, status_t& status);
 /// Writes the running calibration's part: progress towards the wanted sigma or the time limit.
 void write_progress(const CalibrationProgress& progress, const StartOptions& start,
                     double elapsed_s, status_t& status);
+
+/// What ails the camera's picture, in words: "the picture is dark". Empty for kGood.
+std::string_view picture_text(ImageCondition condition);
 
 }  // namespace handeye

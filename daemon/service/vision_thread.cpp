@@ -4,6 +4,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <spdlog/spdlog.h>
 
+#include "daemon/service/status_message.hpp"
+
 namespace handeye {
 namespace {
 
@@ -44,12 +46,30 @@ void VisionThread::run(const std::stop_token& stop) {
     if (frame == nullptr) continue;
     // First, for a search may take long, and a recording should have every frame.
     if (publisher_ && monotonic_ns() < record_until_ns_) publish(*frame);
-    if (const std::uint64_t calibration = collecting_) track(*frame, calibration);
+    const std::uint64_t calibration = collecting_;
+    watch(calibration != 0 ? track(*frame, calibration) : inspector_.inspect(frame->grey));
     frames_.release(frame);
   }
 }
 
-void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
+/// Says it when something begins or ceases to ail the picture; blur comes and goes with the hand.
+void VisionThread::watch(ImageCondition condition) {
+  health_.add(condition);
+  ImageCondition now = health_.recent();
+  if (now == ImageCondition::kGood && health_.count(ImageCondition::kInterlaced) > 0) {
+    now = ImageCondition::kInterlaced;
+  }
+  const ImageCondition before = picture_.exchange(now);
+  if (now == before || now == ImageCondition::kBlurred || before == ImageCondition::kBlurred)
+    return;
+  if (now == ImageCondition::kGood) {
+    spdlog::info("camera: the picture is good again");
+  } else {
+    spdlog::warn("camera: {}", picture_text(now));
+  }
+}
+
+ImageCondition VisionThread::track(const Frame& frame, std::uint64_t calibration) {
   if (calibration != staged_calibration_) {
     const std::scoped_lock lock(board_mutex_);
     stage_ = make_image_stage(board_, options_.mask.clone());
@@ -61,13 +81,15 @@ void VisionThread::track(const Frame& frame, std::uint64_t calibration) {
   process(frame, target);
   features_tracked_ = static_cast<int>(target.observations.size());
   ++frames_collected_;
+  const ImageCondition condition = target.condition;
   if (item == nullptr) {
     tracked_.count_drop();
-    return;
+    return condition;
   }
   item->calibration = calibration;
   item->tracking_ms = stage_->time_ms();
   tracked_.commit(item);
+  return condition;
 }
 
 void VisionThread::process(const Frame& frame, TrackedFrame& tracked) {

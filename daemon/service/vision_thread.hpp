@@ -13,7 +13,9 @@
 #include <handeye/image_t.hpp>
 
 #include "daemon/service/exchange.hpp"
+#include "daemon/session/image_health.hpp"
 #include "daemon/session/image_stage.hpp"
+#include "daemon/tracking/image_inspector.hpp"
 #include "drivers/camera.hpp"
 #include "protocol/bus.hpp"
 
@@ -51,10 +53,13 @@ class VisionThread {
   Exchange<TrackedItem>& tracked() { return tracked_; }
   int features_tracked() const { return features_tracked_; }
   std::int64_t frames_collected() const { return frames_collected_; }
+  /// What ails most of the last images, while collecting or not; kInterlaced: nothing else does.
+  ImageCondition picture() const { return picture_; }
 
  private:
   void run(const std::stop_token& stop);
-  void track(const Frame& frame, std::uint64_t calibration);
+  ImageCondition track(const Frame& frame, std::uint64_t calibration);
+  void watch(ImageCondition condition);
   void process(const Frame& frame, TrackedFrame& tracked);
   void publish(const Frame& frame);
 
@@ -67,6 +72,8 @@ class VisionThread {
   std::unique_ptr<ImageStage> stage_;
   std::uint64_t staged_calibration_{0};
   TrackedFrame overflow_;
+  ImageInspector inspector_;  ///< while nothing is being tracked
+  ImageHealth health_;
 
   std::uint64_t last_calibration_{0};
   std::mutex board_mutex_;  ///< taken once per calibration
@@ -75,6 +82,7 @@ class VisionThread {
   std::atomic<std::int64_t> record_until_ns_{0};
   std::atomic<int> features_tracked_{0};
   std::atomic<std::int64_t> frames_collected_{0};
+  std::atomic<ImageCondition> picture_{ImageCondition::kGood};
   Exchange<TrackedItem> tracked_;
   std::jthread thread_;
 };

@@ -13,6 +13,9 @@ namespace handeye {
 namespace {
 
 constexpr Eigen::Index kPose = 6;
+/// Trackers err together by about this much, however small the residuals: interpolation, windows
+/// seen aslant, a lens that is not quite of the model's kind.
+constexpr double kLeastNoisePx = 0.1;
 
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
@@ -54,8 +57,8 @@ class ReducedSystem {
     by_lens = factor.solve(by_lens);
 
     LensInformation information;
-    const double variance_px2 = squares_px2_ / freedom;
-    information.noise_px = std::sqrt(variance_px2);
+    information.noise_px = std::sqrt(squares_px2_ / freedom);
+    const double variance_px2 = std::pow(std::max(information.noise_px, kLeastNoisePx), 2);
     const LensMatrix inverse = by_lens.bottomRows<kLensParameters>();
     const double shrunk = 2.0 * observations_ / freedom;
     information.covariance =

@@ -24,7 +24,8 @@ struct LensInformation {
 /// (Schur). The errors along a feature's track are not independent - a tracker that has drifted
 /// stays off - so the covariance is widened, direction by direction, to that of the sum of whole
 /// tracks' gradients where that is larger (the sandwich of White 1982 with clusters: Liang & Zeger
-/// 1986). Nothing where the scene is too small to tell.
+/// 1986); and no feature counts as better than 0.1 px. Nothing where the scene is too small to
+/// tell.
 std::optional<LensInformation> lens_information(const CameraModel& camera,
                                                 const LensFreedom& freedom, double robust_px,
                                                 const Scene& scene);

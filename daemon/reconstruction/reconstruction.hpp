@@ -22,10 +22,16 @@ struct ReconstructionOptions {
   double min_resection_ratio{0.3};  ///< inliers among the points a frame sees
   double keyframe_parallax_px{
       24};                 ///< median movement since the last keyframe that makes a new one
-  int max_keyframes{200};  ///< beyond it keyframes are thinned evenly
+  int max_keyframes{80};  ///< of a part; beyond it they are thinned evenly
   int local_window{8};     ///< keyframes adjusted when one is added
   double robust_px{1.5};   ///< Huber loss of the adjustments
   int threads{1};          ///< Ceres with two is not reproducible
+  bool background{true};   ///< local adjustments on a thread of their own; changes nothing but time
+  /// Of a part; beyond it older frames keep their pose relative to their neighbours, but not what
+  /// they showed: 10 MB for 300 features.
+  int max_observed_frames{2000};
+  int min_part_frames{15};     ///< parts with fewer are not worth keeping,
+  double min_part_ratio{0.2};  ///< nor with less than this share of the largest one's frames
 };
 
 /// A frame whose camera pose is known.
@@ -75,10 +81,13 @@ struct Reconstruction {
   Lens lens;
 };
 
-/// Camera motion and scene up to one similarity from feature tracks, frame by frame: two views by
-/// the essential matrix, resection, triangulation, local bundle adjustment; `finish` adjusts
-/// everything. After a loss of tracking a new part starts, with a scale of its own; only the
-/// largest is returned. Deterministic. One thread.
+/// Camera motion and scene up to one similarity from feature tracks, frame by frame: a start by
+/// factorisation or two views, resection in which points count by their history, triangulation,
+/// local bundle adjustment on a thread of its own; `finish` adjusts everything. After a loss of
+/// tracking the frames are looked for in the scene by what the features look like, and the
+/// reconstruction goes on when that succeeds; until then a new part is tried, with a scale of its
+/// own. Dark and frozen frames are passed over: features that outlast them go on.
+/// Deterministic, whatever the threads do. To be used from one thread.
 class IncrementalReconstruction {
  public:
   IncrementalReconstruction(const CameraModel& camera, const ReconstructionOptions& options = {});

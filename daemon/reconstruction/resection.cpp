@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/reconstruction/resection.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,13 @@ constexpr int kRobustIterations = 12;
 constexpr int kPolishIterations = 5;
 constexpr double kMinDepth = 1e-6;
 constexpr int kRansacIterations = 300;
+/// Where there are enough matches of this weight, RANSAC draws from them alone.
+constexpr double kTrustedWeight = 0.25;
+/// What a match is taken to be worth when a pose's uncertainty is judged: not the noise alone, but
+/// what tracks and points are off by in the long run.
+constexpr double kMatchSigmaPx = 0.7;
+constexpr double kMaxSigmaRad = 0.01;
+constexpr double kMaxSigmaOfDepth = 0.01;
 
 double error_px(const CameraModel& camera, const Pose& eye_from_scene, const PointMatch& match) {
   const Eigen::Vector3d point_eye = eye_from_scene * match.point_scene;
@@ -38,7 +46,7 @@ double step_pose(const CameraModel& camera, const std::vector<PointMatch>& match
     if (!(point_eye.z() > kMinDepth)) continue;
     const Projection projection = project_with_derivative(camera, point_eye);
     const Eigen::Vector2d error = projection.pixel - match.pixel;
-    const double w = weight(error.norm());
+    const double w = match.weight * weight(error.norm());
     if (w <= 0) continue;
     Eigen::Matrix<double, 2, 6> by_pose;
     by_pose.leftCols<3>() = -projection.by_point_eye * skew(rotated);
@@ -57,15 +65,21 @@ double step_pose(const CameraModel& camera, const std::vector<PointMatch>& match
 std::optional<Pose> pose_by_ransac(const CameraModel& camera,
                                    const std::vector<PointMatch>& matches,
                                    const ResectionOptions& options) {
+  const auto enough = std::max<std::ptrdiff_t>(4, options.min_inliers);
+  const auto trusted = std::count_if(matches.begin(), matches.end(), [](const PointMatch& match) {
+    return match.weight >= kTrustedWeight;
+  });
+  const double least_weight = trusted >= enough ? kTrustedWeight : 0.0;
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> rays;
   for (const PointMatch& match : matches) {
+    if (match.weight < least_weight) continue;
     const auto ray = unproject(camera, match.pixel);
     if (!ray) continue;
     points.emplace_back(match.point_scene.x(), match.point_scene.y(), match.point_scene.z());
     rays.emplace_back(ray->x(), ray->y());
   }
-  if (static_cast<int>(points.size()) < std::max(4, options.min_inliers)) return std::nullopt;
+  if (static_cast<std::ptrdiff_t>(points.size()) < enough) return std::nullopt;
   // OpenCV seeds this RANSAC with a constant: the same matches give the same pose.
   cv::Vec3d rotation;
   cv::Vec3d translation;
@@ -80,6 +94,33 @@ std::optional<Pose> pose_by_ransac(const CameraModel& camera,
   pose.translation() = Eigen::Vector3d(translation[0], translation[1], translation[2]);
   if (!pose.matrix().allFinite()) return std::nullopt;
   return pose;
+}
+
+/// Whether the inliers hold the pose in place: with few, or all in one corner of the image, a pose
+/// may fit them well and yet be far off.
+bool is_well_determined(const CameraModel& camera, const std::vector<PointMatch>& matches,
+                        const ResectionOptions& options, const Pose& pose) {
+  Matrix6d normal = Matrix6d::Zero();
+  std::vector<double> depths;
+  for (const PointMatch& match : matches) {
+    if (error_px(camera, pose, match) > options.max_reprojection_px) continue;
+    // About the eye's own axes, where rotation and translation are least entangled.
+    const Eigen::Vector3d point_eye = pose * match.point_scene;
+    const Projection projection = project_with_derivative(camera, point_eye);
+    Eigen::Matrix<double, 2, 6> by_pose;
+    by_pose.leftCols<3>() = -projection.by_point_eye * skew(point_eye);
+    by_pose.rightCols<3>() = projection.by_point_eye;
+    normal.noalias() += match.weight * by_pose.transpose() * by_pose;
+    depths.push_back(point_eye.z());
+  }
+  const Eigen::LDLT<Matrix6d> factorised(normal);
+  if (factorised.info() != Eigen::Success) return false;
+  const Matrix6d covariance =
+      factorised.solve(Matrix6d::Identity()) * kMatchSigmaPx * kMatchSigmaPx;
+  const double rotation_rad = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double shift = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  // Comparisons that a NaN fails.
+  return rotation_rad <= kMaxSigmaRad && shift <= kMaxSigmaOfDepth * median(std::move(depths));
 }
 
 }  // namespace
@@ -119,17 +160,24 @@ std::optional<Resection> refine_pose(const CameraModel& camera,
     if (step < 1e-9) break;
   }
   double sum = 0.0;
+  double weight_of_all = 0.0;
+  double weight_of_inliers = 0.0;
   for (const PointMatch& match : matches) {
     const double error = error_px(camera, pose, match);
+    weight_of_all += match.weight;
     if (error > options.max_reprojection_px) continue;
     sum += error * error;
+    weight_of_inliers += match.weight;
     ++result.inliers;
   }
   if (result.inliers < options.min_inliers ||
-      result.inliers < options.min_inlier_ratio * static_cast<double>(matches.size())) {
+      weight_of_inliers < options.min_inlier_ratio * weight_of_all) {
     return std::nullopt;
   }
   result.reprojection_px = std::sqrt(sum / result.inliers);
+  // Predicted from frames that were predicted themselves: rounding would pile up.
+  pose.linear() = nearest_rotation(pose.linear());
+  if (!is_well_determined(camera, matches, options, pose)) return std::nullopt;
   return result;
 }
 

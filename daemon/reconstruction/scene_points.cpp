@@ -69,7 +69,7 @@ int triangulate_tracks(const CameraModel& camera, const PointOptions& options, i
   std::vector<PosedRay> rays;
   for (const int position : scene.keyframes[static_cast<std::size_t>(keyframe)].tracks) {
     Track& track = scene.tracks[static_cast<std::size_t>(position)];
-    if (track.has_point || track.observations.size() < 2) continue;
+    if (track.has_point || track.refused || track.observations.size() < 2) continue;
     if (triangulate_track(camera, options, scene, track, rays)) ++won;
   }
   return won;

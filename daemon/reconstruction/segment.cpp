@@ -5,23 +5,33 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/reconstruction/bundle_adjustment.hpp"
+#include "daemon/reconstruction/final_adjustment.hpp"
+#include "daemon/reconstruction/keyframe_thinning.hpp"
+#include "daemon/reconstruction/point_trust.hpp"
 #include "daemon/reconstruction/scene_points.hpp"
 
 namespace handeye {
 namespace {
 
-/// Frames in a row without a pose after which the part is given up: occlusions this short are
-/// bridged as long as the features survive them.
+/// Frames in a row without a pose after which the part is given up for the time being: occlusions
+/// this short are bridged as long as the features survive them.
 constexpr int kMaxMisses = 5;
 /// A frame that sees less than this share of the last keyframe's points becomes a keyframe itself.
 constexpr double kKeyframeInlierRatio = 0.7;
 constexpr int kWindowIterations = 6;
-constexpr int kMaxRounds = 4;
+/// Trust of the points that a part starts with: several views have agreed on them.
+constexpr int kStartTrust = 4;
+/// Frames kept while looking for a start; older ones no longer share features with the newest.
+constexpr int kMostFramesBeforeStart = 1000;
 
 ResectionOptions resection_options(const ReconstructionOptions& options) {
   return {options.max_reprojection_px, options.robust_px, options.min_resection_inliers,
           options.min_resection_ratio};
+}
+
+/// Chains of corrections must not let rounding grow.
+Pose normalised(const Pose& pose) {
+  return make_pose(Eigen::Quaterniond(pose.linear()), pose.translation());
 }
 
 PointOptions point_options(const ReconstructionOptions& options) {
@@ -30,94 +40,78 @@ PointOptions point_options(const ReconstructionOptions& options) {
 
 }  // namespace
 
-Segment::Segment(const CameraModel& camera, const ReconstructionOptions& options)
-    : camera_(camera), options_(options), search_(camera, options) {}
+Segment::Segment(const CameraModel& camera, const ReconstructionOptions& options,
+                 AdjustmentThread& thread)
+    : camera_(camera), options_(options), adjuster_(thread, options.background) {
+  search_.emplace(camera, options);
+}
 
-ReconstructionState Segment::add(FrameRecord frame) {
-  frames_.push_back(std::move(frame));
-  if (!started()) return search_start();
-  FrameRecord& newest = frames_.back();
-  if (!register_frame(newest, predict())) {
+ReconstructionState Segment::add(FrameRecord frame, const Appearances& appearances) {
+  FrameRecord& newest = frames_.append(std::move(frame));
+  if (adjuster_.count_frame()) take_over_adjustment();
+  if (!started()) return search_start(appearances);
+  if (!register_frame(newest, frames_.predict_newest())) {
     ++misses_;
     return ReconstructionState::kTracking;
   }
   misses_ = 0;
+  update_trust(camera_, *newest.eye_from_scene, matches_, options_.max_reprojection_px, scene_);
   if (wants_keyframe(newest)) {
-    insert_keyframe(newest);
-    adjust_window();
-    thin_keyframes();
+    insert_keyframe(newest, appearances);
+    begin_adjustment();
   }
+  frames_.bound_memory(options_.max_observed_frames);
   return ReconstructionState::kTracking;
 }
 
 bool Segment::lost() const {
   if (started()) return misses_ >= kMaxMisses;
-  if (frames_.size() < 2) return false;
-  const auto common = common_features(frames_[frames_.size() - 2], frames_.back());
+  if (frames_.count() < 2) return false;
+  const auto& frames = frames_.all();
+  const auto common = common_features(frames[frames.size() - 2], frames.back());
   return static_cast<int>(common.size()) < options_.min_common_features;
 }
 
-std::vector<FrameRecord> Segment::take_lost_frames() {
-  const int count = started() ? misses_ : 1;
-  const auto first = frames_.end() - count;
-  std::vector<FrameRecord> lost(std::make_move_iterator(first),
-                                std::make_move_iterator(frames_.end()));
-  frames_.erase(first, frames_.end());
-  misses_ = 0;
-  return lost;
+FrameHistory::Frames Segment::take_lost_frames() {
+  return frames_.take_last(started() ? std::exchange(misses_, 0) : 1);
 }
 
-ReconstructionState Segment::search_start() {
-  StartAttempt attempt = search_.look(frames_);
-  if (attempt.scene) adopt(std::move(*attempt.scene));
+FrameHistory::Frames Segment::take_all_frames() {
+  return frames_.take_last(frames_.count());
+}
+
+ReconstructionState Segment::search_start(const Appearances& appearances) {
+  if (frames_.count() > kMostFramesBeforeStart) {
+    frames_.drop_first(kMostFramesBeforeStart / 2);
+    search_.emplace(camera_, options_);
+  }
+  StartAttempt attempt = search_->look(frames_.all());
+  if (attempt.scene) adopt(std::move(*attempt.scene), appearances);
   return attempt.state;
 }
 
 /// Takes the started scene over and registers all frames so far, outwards from those it has.
-void Segment::adopt(Scene scene) {
+void Segment::adopt(Scene scene, const Appearances& appearances) {
   scene_ = std::move(scene);
+  search_.reset();
+  for (Track& track : scene_.tracks) {
+    if (track.has_point) track.trust = kStartTrust;
+  }
   for (std::size_t k = 0; k < scene_.keyframes.size(); ++k) {
     Keyframe& keyframe = scene_.keyframes[k];
-    FrameRecord& frame = *find_frame(keyframe.frame_index);
+    FrameRecord& frame = *frames_.find(keyframe.frame_index);
     register_frame(frame, keyframe.eye_from_scene);
     frame.eye_from_scene = keyframe.eye_from_scene;
     frame.keyframe = true;
     keyframe_inliers_ = frame.inliers;
+    scene_.note_appearances(static_cast<int>(k), appearances);
     if (k == 0) continue;
     const Keyframe& before = scene_.keyframes[k - 1];
     keyframe.travel_px =
         before.travel_px +
-        median_movement_px(camera_, common_features(*find_frame(before.frame_index), frame));
+        median_movement_px(camera_, common_features(*frames_.find(before.frame_index), frame));
   }
   refresh_frames();
-}
-
-const FrameRecord* Segment::find_frame(std::int64_t index) const {
-  const auto found = std::lower_bound(
-      frames_.begin(), frames_.end(), index,
-      [](const FrameRecord& frame, std::int64_t wanted) { return frame.index < wanted; });
-  return found != frames_.end() && found->index == index ? &*found : nullptr;
-}
-
-FrameRecord* Segment::find_frame(std::int64_t index) {
-  const FrameRecord* found = std::as_const(*this).find_frame(index);
-  return found != nullptr ? &frames_[static_cast<std::size_t>(found - frames_.data())] : nullptr;
-}
-
-/// Constant velocity, by the index of the frames, from the last two that are registered.
-Pose Segment::predict() const {
-  const FrameRecord* last = nullptr;
-  for (auto frame = frames_.rbegin() + 1; frame != frames_.rend(); ++frame) {
-    if (!frame->eye_from_scene) continue;
-    if (last == nullptr) {
-      last = &*frame;
-      continue;
-    }
-    const double ahead = static_cast<double>(frames_.back().index - frame->index) /
-                         static_cast<double>(last->index - frame->index);
-    return interpolate(*frame->eye_from_scene, *last->eye_from_scene, std::min(ahead, 3.0));
-  }
-  return last != nullptr ? *last->eye_from_scene : Pose::Identity();
 }
 
 bool Segment::register_frame(FrameRecord& frame, const Pose& predicted) {
@@ -134,104 +128,150 @@ bool Segment::register_frame(FrameRecord& frame, const Pose& predicted) {
 
 bool Segment::wants_keyframe(const FrameRecord& frame) const {
   if (frame.inliers < kKeyframeInlierRatio * keyframe_inliers_) return true;
-  const Keyframe& last = scene_.keyframes.back();
-  const FrameRecord* before = find_frame(last.frame_index);
+  const FrameRecord* before = frames_.find(scene_.keyframes.back().frame_index);
   return median_movement_px(camera_, common_features(*before, frame)) >=
          options_.keyframe_parallax_px;
 }
 
-void Segment::insert_keyframe(FrameRecord& frame) {
+void Segment::insert_keyframe(FrameRecord& frame, const Appearances& appearances) {
   const Keyframe& last = scene_.keyframes.back();
-  const double movement_px =
-      median_movement_px(camera_, common_features(*find_frame(last.frame_index), frame));
-  scene_.add_keyframe(camera_, frame, *frame.eye_from_scene, last.travel_px + movement_px);
+  const double moved_px =
+      median_movement_px(camera_, common_features(*frames_.find(last.frame_index), frame));
   frame.keyframe = true;
   keyframe_inliers_ = frame.inliers;
+  scene_.add_keyframe(camera_, frame, *frame.eye_from_scene, last.travel_px + moved_px);
   const int newest = keyframe_count() - 1;
+  scene_.note_appearances(newest, appearances);
   triangulate_tracks(camera_, point_options(options_), newest, scene_);
   judge_observations(camera_, point_options(options_), newest, scene_);
 }
 
-/// Gives up the keyframe whose neighbours are nearest to each other, first and window apart.
-void Segment::thin_keyframes() {
-  if (keyframe_count() <= options_.max_keyframes) return;
-  int weakest = -1;
-  double smallest_px = 0.0;
-  for (int k = 1; k < keyframe_count() - options_.local_window; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double gap_px = scene_.keyframes[i + 1].travel_px - scene_.keyframes[i - 1].travel_px;
-    if (weakest < 0 || gap_px < smallest_px) {
-      weakest = k;
-      smallest_px = gap_px;
-    }
-  }
-  if (weakest < 0) return;
-  find_frame(scene_.keyframes[static_cast<std::size_t>(weakest)].frame_index)->keyframe = false;
-  scene_.remove_keyframe(weakest);
+std::optional<Relocalisation> Segment::find(const FrameRecord& frame,
+                                            const Appearances& appearances) const {
+  return relocalise(camera_, frame, appearances, resection_options(options_), scene_);
 }
 
-void Segment::adjust_window() {
+void Segment::resume(FrameHistory::Frames frames, const Relocalisation& found,
+                     const Appearances& appearances) {
+  const int count = static_cast<int>(frames.size());
+  for (FrameRecord& frame : frames) frames_.append(std::move(frame));
+  for (const Recognition& its : found.recognised) scene_.link(its.feature_id, its.track);
+  misses_ = 0;
+  FrameRecord& newest = frames_.newest();
+  if (!register_frame(newest, found.eye_from_scene)) return;
+  insert_keyframe(newest, appearances);
+  begin_adjustment();
+  register_backwards(count);
+}
+
+void Segment::begin_adjustment() {
   AdjustmentOptions adjustment;
   adjustment.first_variable = std::max(0, keyframe_count() - options_.local_window);
   adjustment.robust_px = options_.robust_px;
   adjustment.max_iterations = kWindowIterations;
   adjustment.function_tolerance = 1e-4;
   adjustment.threads = options_.threads;
-  adjust(camera_, adjustment, scene_);
-  judge_observations(camera_, point_options(options_), adjustment.first_variable, scene_);
-  for (int k = adjustment.first_variable; k < keyframe_count(); ++k) {
-    const Keyframe& keyframe = scene_.keyframes[static_cast<std::size_t>(k)];
-    find_frame(keyframe.frame_index)->eye_from_scene = keyframe.eye_from_scene;
+  adjuster_.begin(camera_, adjustment, scene_);
+}
+
+void Segment::take_over_adjustment() {
+  const bool again = adjuster_.wanted_again();
+  std::vector<Pose> before;
+  for (const Keyframe& keyframe : scene_.keyframes) before.push_back(keyframe.eye_from_scene);
+  const AdjustmentWindow window = adjuster_.take();
+  take_over(window, scene_);
+  carry_frames(before);
+  judge_observations(camera_, point_options(options_),
+                     window.first_keyframe + window.options.first_variable, scene_);
+  thin_keyframes();
+  if (again) begin_adjustment();
+}
+
+/// Frames between keyframes go along with the keyframe before them, and so do keyframes that came
+/// after the window had been cut out.
+void Segment::carry_frames(const std::vector<Pose>& before) {
+  std::size_t k = 0;
+  while (k < before.size() && scene_.keyframes[k].eye_from_scene.matrix() == before[k].matrix())
+    ++k;
+  if (k == before.size()) return;
+  Pose old_from_new = Pose::Identity();
+  auto frame = frames_.all().begin() +
+               (frames_.find(scene_.keyframes[k].frame_index) - frames_.all().data());
+  for (; frame != frames_.all().end(); ++frame) {
+    if (k < before.size() && scene_.keyframes[k].frame_index == frame->index) {
+      Keyframe& keyframe = scene_.keyframes[k];
+      const bool adjusted = keyframe.eye_from_scene.matrix() != before[k].matrix();
+      if (adjusted) {
+        old_from_new = before[k].inverse() * keyframe.eye_from_scene;
+      } else {
+        keyframe.eye_from_scene = normalised(before[k] * old_from_new);
+      }
+      frame->eye_from_scene = keyframe.eye_from_scene;
+      ++k;
+    } else if (frame->eye_from_scene) {
+      frame->eye_from_scene = normalised(*frame->eye_from_scene * old_from_new);
+    }
   }
+}
+
+void Segment::thin_keyframes() {
+  while (const auto spare =
+             keyframe_to_spare(scene_, options_.max_keyframes, options_.local_window)) {
+    const Keyframe& keyframe = scene_.keyframes[static_cast<std::size_t>(*spare)];
+    frames_.find(keyframe.frame_index)->keyframe = false;
+    scene_.remove_keyframe(*spare);
+  }
+}
+
+void Segment::settle() {
+  while (adjuster_.under_way()) take_over_adjustment();
 }
 
 void Segment::finish() {
+  settle();
   if (!started()) return;
-  adjust_all();
+  adjust_finally(camera_, options_, scene_);
   refresh_frames();
 }
 
-/// Adjustments of everything, with tracks won back and outliers dropped between them, until the
-/// verdicts on the observations settle; the last one to full convergence.
-void Segment::adjust_all() {
-  AdjustmentOptions adjustment;
-  adjustment.robust_px = options_.robust_px;
-  adjustment.threads = options_.threads;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    int changed = 0;
-    for (int k = 1; k < keyframe_count(); ++k) {
-      changed += triangulate_tracks(camera_, point_options(options_), k, scene_);
-    }
-    changed += judge_observations(camera_, point_options(options_), 0, scene_);
-    const bool last = round > 0 && (changed < 5 || round + 1 == kMaxRounds);
-    adjustment.max_iterations = last ? 50 : 15;
-    adjustment.function_tolerance = last ? 1e-9 : 1e-5;
-    adjust(camera_, adjustment, scene_);
-    if (last) break;
-  }
-  judge_observations(camera_, point_options(options_), 0, scene_);
+void Segment::refresh_rays() {
+  settle();
+  scene_.refresh_rays(camera_);
 }
 
-/// Poses of all frames from the points as they are now: keyframes keep the adjusted ones, the
-/// others start from their nearest registered neighbour, forwards and then backwards.
+/// Poses of all frames from the points as they are now: keyframes keep the adjusted ones, settled
+/// frames go along with the frame before them, the others start from where they were.
 void Segment::refresh_frames() {
-  for (const Keyframe& keyframe : scene_.keyframes) {
-    FrameRecord& frame = *find_frame(keyframe.frame_index);
-    register_frame(frame, keyframe.eye_from_scene);
-    registered_ += frame.eye_from_scene ? 0 : 1;
-    frame.eye_from_scene = keyframe.eye_from_scene;
-  }
-  const auto sweep = [this](auto begin, auto end, bool again) {
-    const Pose* neighbour = nullptr;
-    for (auto frame = begin; frame != end; ++frame) {
-      if (!frame->keyframe && (again || !frame->eye_from_scene) && neighbour != nullptr) {
-        register_frame(*frame, frame->eye_from_scene.value_or(*neighbour));
-      }
-      if (frame->eye_from_scene) neighbour = &*frame->eye_from_scene;
+  auto keyframe = scene_.keyframes.begin();
+  const Pose* neighbour = nullptr;
+  Pose old_from_new = Pose::Identity();
+  for (FrameRecord& frame : frames_.all()) {
+    const std::optional<Pose> before = frame.eye_from_scene;
+    if (is_settled(frame)) {
+      frame.eye_from_scene = normalised(*before * old_from_new);
+    } else if (frame.keyframe) {
+      register_frame(frame, keyframe->eye_from_scene);
+      registered_ += frame.eye_from_scene ? 0 : 1;
+      frame.eye_from_scene = keyframe->eye_from_scene;
+      ++keyframe;
+    } else if (before || neighbour != nullptr) {
+      register_frame(frame, before ? *before : *neighbour);
     }
-  };
-  sweep(frames_.begin(), frames_.end(), true);
-  sweep(frames_.rbegin(), frames_.rend(), false);
+    if (!frame.eye_from_scene) continue;
+    neighbour = &*frame.eye_from_scene;
+    if (before && !is_settled(frame)) old_from_new = before->inverse() * *neighbour;
+  }
+  register_backwards(frames_.count());
+}
+
+/// Registers those of the last frames that have no pose, each from the one after it.
+void Segment::register_backwards(int count) {
+  const Pose* neighbour = nullptr;
+  auto& frames = frames_.all();
+  for (auto frame = frames.rbegin(); frame != frames.rbegin() + count; ++frame) {
+    if (!frame->eye_from_scene && neighbour != nullptr) register_frame(*frame, *neighbour);
+    if (frame->eye_from_scene) neighbour = &*frame->eye_from_scene;
+  }
 }
 
 Reconstruction Segment::result() const {
@@ -240,7 +280,7 @@ Reconstruction Segment::result() const {
   result.state = ReconstructionState::kTracking;
   double sum = 0.0;
   double count = 0.0;
-  for (const FrameRecord& frame : frames_) {
+  for (const FrameRecord& frame : frames_.all()) {
     if (!frame.eye_from_scene) continue;
     result.frames.push_back({.index = frame.index,
                              .timestamp_ns = frame.timestamp_ns,

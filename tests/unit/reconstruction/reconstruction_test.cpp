@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/reconstruction/reconstruction.hpp"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/reconstruction/synthetic_tracks.hpp"
@@ -88,17 +90,24 @@ TEST(Reconstruction, SaysTooFewFeaturesOfStills) {
   EXPECT_EQ(reconstruct(tracks).state, ReconstructionState::kTooFewFeatures);
 }
 
-TEST(Reconstruction, ReturnsTheLargerPartAfterALossOfTracking) {
+TEST(Reconstruction, ReturnsBothPartsAfterALossOfTracking) {
   SyntheticOptions options;
   options.frames = 240;
   options.blind_frame = 90;
   const SyntheticTracks tracks = test::synthesize(options, test::free_hand());
   const Reconstruction result = reconstruct(tracks);
   ASSERT_EQ(result.state, ReconstructionState::kTracking);
-  EXPECT_EQ(result.frames.front().index, 90);
-  EXPECT_EQ(result.frames.back().index, 239);
-  EXPECT_EQ(result.frames.size(), 150U);
-  EXPECT_LT(test::compare(result.frames, tracks.eye_from_room).rotation_rms_deg, 0.1);
+  EXPECT_EQ(result.parts, 2);
+  ASSERT_EQ(result.frames.size(), 240U);
+  std::array<std::vector<RegisteredFrame>, 2> parts;
+  for (std::size_t i = 0; i < result.frames.size(); ++i) {
+    EXPECT_EQ(result.frames[i].index, static_cast<std::int64_t>(i));
+    parts.at(static_cast<std::size_t>(result.frames[i].part)).push_back(result.frames[i]);
+  }
+  EXPECT_EQ(parts[0].size(), 150U);
+  for (const auto& part : parts) {
+    EXPECT_LT(test::compare(part, tracks.eye_from_room).rotation_rms_deg, 0.1);
+  }
 }
 
 TEST(Reconstruction, GoesOnAfterFinish) {
@@ -121,8 +130,10 @@ TEST(Reconstruction, ThinsKeyframesAboveTheLimit) {
   few.max_keyframes = 25;
   IncrementalReconstruction reconstruction(tracks.camera, few);
   for (const TrackedFrame& frame : tracks.frames) reconstruction.add(frame);
-  EXPECT_LE(reconstruction.keyframes(), 25);
+  // Some more may have been made while an adjustment is under way.
+  EXPECT_LE(reconstruction.keyframes(), 25 + 5);
   const Reconstruction result = reconstruction.finish();
+  EXPECT_LE(reconstruction.keyframes(), 25);
   EXPECT_EQ(result.frames.size(), tracks.frames.size());
   EXPECT_LT(test::compare(result.frames, tracks.eye_from_room).rotation_rms_deg, 0.3);
 }

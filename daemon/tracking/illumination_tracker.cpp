@@ -21,8 +21,8 @@ constexpr int kWidestPx = 1280;  ///< wider images are halved
 /// Cells looked at per frame for new features, as a fraction of all: empty cells without texture
 /// would otherwise cost a full detection in every frame.
 constexpr int kCellsFraction = 6;
-/// More cells than features wanted: some are empty of texture, others hold two.
-constexpr double kCellsPerFeature = 1.1;
+/// More cells than features wanted: in an endoscopy many are empty of texture or under a highlight.
+constexpr double kCellsPerFeature = 1.8;
 /// Usable areas that differ by less share a grid.
 constexpr double kSameShare = 0.2;
 constexpr float kLeastCorrelation = 0.8F;

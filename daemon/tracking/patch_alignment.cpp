@@ -25,6 +25,7 @@ constexpr float kLeastShare = 0.5F;
 constexpr double kLeastNoise = 0.5 * ImagePyramid::kUnitsPerGrey;
 /// A texture that leaves the position less sure than this at the least noise [px].
 constexpr double kWeakestSigma = 0.15;
+constexpr float kSameMaskPx = 0.2F;  ///< a start that near saw the same of the mask
 constexpr float kLargestStretch = 3.0F;
 
 PatchFit judge(double energy, double explained, double signal, double sigma_per_noise,
@@ -64,6 +65,17 @@ bool Appearance::take(const ImagePyramid& pyramid, int x, int y) {
 }
 
 PatchFit Appearance::align(const ImagePyramid& pyramid, AffineWarp& warp) const {
+  const AffineWarp start = warp;
+  const PatchFit fit = align_from(pyramid, warp);
+  if (!fit.found || (warp.centre - start.centre).norm() < kSameMaskPx) return fit;
+  // What may be looked at was asked where the patch was looked for, not where it is.
+  Patch weights;
+  const bool whole = usable_share(pyramid, 0, start, weights) >= 1.0F &&
+                     usable_share(pyramid, 0, warp, weights) >= 1.0F;
+  return whole ? fit : align_from(pyramid, warp);
+}
+
+PatchFit Appearance::align_from(const ImagePyramid& pyramid, AffineWarp& warp) const {
   Patch weights;
   const float share = usable_share(pyramid, 0, warp, weights);
   if (share < kLeastShare) return {};

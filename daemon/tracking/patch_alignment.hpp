@@ -28,6 +28,8 @@ class Appearance {
   PatchFit align(const ImagePyramid& pyramid, AffineWarp& warp) const;
 
  private:
+  PatchFit align_from(const ImagePyramid& pyramid, AffineWarp& warp) const;
+
   PatchBasis basis_;
   PatchBasis::Matrix inverse_;  ///< of the normal matrix
   double contrast_{0};          ///< sum of the squares of its grey values

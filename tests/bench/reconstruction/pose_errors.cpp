@@ -4,8 +4,9 @@
 // holds frames.csv and truth_poses.csv (of write_sequence: timestamp_ns and scene_from_eye) or
 // reference_poses.csv (file and eye_from_scene), which are the columns of POSES.csv too.
 // Prints one line: frames, frames registered, rotation rms [deg], position rms [% of the scene's
-// distance, without one of the extent of the true positions], mean difference of the relative
-// rotations of pairs at least 5 frames apart [deg].
+// distance, without one of the extent of the true positions], rotation rms with the orientations
+// aligned by themselves [deg], mean difference of the relative rotations of pairs at least 5 frames
+// apart [deg].
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -121,11 +122,12 @@ void print_errors(const std::vector<Frame>& frames, double scene_distance) {
   const auto error =
       sequences::pose_error(pairs, scene_distance > 0 ? scene_distance : extent(pairs));
   if (!error) {
-    fmt::print("{} {} nan nan nan\n", frames.size(), pairs.size());
+    fmt::print("{} {} nan nan nan nan\n", frames.size(), pairs.size());
     return;
   }
-  fmt::print("{} {} {:.4f} {:.4f} {:.4f}\n", frames.size(), pairs.size(), error->rotation_rms_deg,
-             100 * error->position_rms, relative_rotation_deg(frames));
+  fmt::print("{} {} {:.4f} {:.4f} {:.4f} {:.4f}\n", frames.size(), pairs.size(),
+             error->rotation_rms_deg, 100 * error->position_rms, error->turning_rms_deg,
+             relative_rotation_deg(frames));
 }
 
 }  // namespace

@@ -70,6 +70,18 @@ void add_instrument(double share, std::vector<ScenePoint>& points, std::mt19937&
   }
 }
 
+/// What a point looks like: bits of its own, some of which a second look sees differently.
+FeatureDescription look_at(const ScenePoint& point, const ScenePoint& first_point,
+                           std::mt19937& random) {
+  std::mt19937 own(static_cast<unsigned>(&point - &first_point) + 77U);
+  FeatureDescription description{point.feature_id, {}};
+  for (std::uint8_t& byte : description.bits) {
+    byte = static_cast<std::uint8_t>(own() & 0xFFU);
+    if (random() % 2 == 0) byte = static_cast<std::uint8_t>(byte ^ (1U << (random() % 8)));
+  }
+  return description;
+}
+
 std::vector<ScenePoint> make_surface(double relief_mm, std::mt19937& random) {
   std::uniform_real_distribution<double> across(-130.0, 130.0);
   std::vector<ScenePoint> points(1600);
@@ -150,6 +162,7 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
   const CameraModel& camera = tracks.camera;
   std::vector<ScenePoint> points = make_surface(options.relief_mm, random);
   if (options.instrument_share > 0) add_instrument(options.instrument_share, points, random);
+  std::mt19937 more_random(options.seed + 1000);
   std::int64_t next_id = 0;
   for (int f = 0; f < options.frames; ++f) {
     const double time_s = f / options.rate_hz;
@@ -171,13 +184,14 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
       const bool visible = eye.z() > 1 && eye.head<2>().norm() < eye.z() && pixel.x() > 5 &&
                            pixel.y() > 5 && pixel.x() < camera.width - 6 &&
                            pixel.y() < camera.height - 6;
-      const bool dies = f == options.blind_frame || uniform(random) < options.death_rate;
+      const bool blind = f >= options.blind_frame && f < options.blind_frame + options.blind_frames;
+      const bool dies = blind || f == options.blind_frame || uniform(random) < options.death_rate;
       if (point.feature_id >= 0 && (!visible || dies)) {
         point.feature_id = -1;
         point.slide_px.setZero();
         point.sliding = false;
       }
-      if (!visible) continue;
+      if (!visible || blind) continue;
       if (point.feature_id < 0) {
         candidates.push_back(&point);
         continue;
@@ -189,6 +203,9 @@ SyntheticTracks synthesize(const SyntheticOptions& options, const Motion& motion
     for (ScenePoint* point : candidates) {
       if (static_cast<int>(frame.observations.size()) >= options.max_features) break;
       point->feature_id = next_id++;
+      if (options.described) {
+        frame.descriptions.push_back(look_at(*point, points.front(), more_random));
+      }
       point->sliding = uniform(random) < options.outlier_tracks;
       point->slide_step_px = {2.0 * uniform(random) - 1.0, 2.0 * uniform(random) - 1.0};
       const Eigen::Vector2d pixel = project<double>(camera, seen_at(*point));

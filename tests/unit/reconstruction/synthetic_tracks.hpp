@@ -23,6 +23,8 @@ struct SyntheticOptions {
   int max_features{250};
   double instrument_share{0};  ///< of the visible features: on a body that moves by itself
   int blind_frame{-1};         ///< all tracks are lost before this frame
+  int blind_frames{0};         ///< and nothing is seen for so many from it on
+  bool described{false};       ///< features come with what they look like
   unsigned seed{1};
   std::optional<CameraModel> camera;  ///< nothing: an endoscope's
 };

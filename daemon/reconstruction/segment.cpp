@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/reconstruction/carrying.hpp"
 #include "daemon/reconstruction/final_adjustment.hpp"
 #include "daemon/reconstruction/keyframe_thinning.hpp"
 #include "daemon/reconstruction/point_trust.hpp"
@@ -27,11 +28,6 @@ constexpr int kMostFramesBeforeStart = 1000;
 ResectionOptions resection_options(const ReconstructionOptions& options) {
   return {options.max_reprojection_px, options.robust_px, options.min_resection_inliers,
           options.min_resection_ratio};
-}
-
-/// Chains of corrections must not let rounding grow.
-Pose normalised(const Pose& pose) {
-  return make_pose(Eigen::Quaterniond(pose.linear()), pose.translation());
 }
 
 PointOptions point_options(const ReconstructionOptions& options) {
@@ -180,38 +176,11 @@ void Segment::take_over_adjustment() {
   for (const Keyframe& keyframe : scene_.keyframes) before.push_back(keyframe.eye_from_scene);
   const AdjustmentWindow window = adjuster_.take();
   take_over(window, scene_);
-  carry_frames(before);
+  carry_along(before, scene_, frames_);
   judge_observations(camera_, point_options(options_),
                      window.first_keyframe + window.options.first_variable, scene_);
   thin_keyframes();
   if (again) begin_adjustment();
-}
-
-/// Frames between keyframes go along with the keyframe before them, and so do keyframes that came
-/// after the window had been cut out.
-void Segment::carry_frames(const std::vector<Pose>& before) {
-  std::size_t k = 0;
-  while (k < before.size() && scene_.keyframes[k].eye_from_scene.matrix() == before[k].matrix())
-    ++k;
-  if (k == before.size()) return;
-  Pose old_from_new = Pose::Identity();
-  auto frame = frames_.all().begin() +
-               (frames_.find(scene_.keyframes[k].frame_index) - frames_.all().data());
-  for (; frame != frames_.all().end(); ++frame) {
-    if (k < before.size() && scene_.keyframes[k].frame_index == frame->index) {
-      Keyframe& keyframe = scene_.keyframes[k];
-      const bool adjusted = keyframe.eye_from_scene.matrix() != before[k].matrix();
-      if (adjusted) {
-        old_from_new = before[k].inverse() * keyframe.eye_from_scene;
-      } else {
-        keyframe.eye_from_scene = normalised(before[k] * old_from_new);
-      }
-      frame->eye_from_scene = keyframe.eye_from_scene;
-      ++k;
-    } else if (frame->eye_from_scene) {
-      frame->eye_from_scene = normalised(*frame->eye_from_scene * old_from_new);
-    }
-  }
 }
 
 void Segment::thin_keyframes() {
@@ -248,7 +217,7 @@ void Segment::refresh_frames() {
   for (FrameRecord& frame : frames_.all()) {
     const std::optional<Pose> before = frame.eye_from_scene;
     if (is_settled(frame)) {
-      frame.eye_from_scene = normalised(*before * old_from_new);
+      frame.eye_from_scene = carried(*before, old_from_new);
     } else if (frame.keyframe) {
       register_frame(frame, keyframe->eye_from_scene);
       registered_ += frame.eye_from_scene ? 0 : 1;

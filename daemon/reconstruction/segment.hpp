@@ -71,7 +71,6 @@ class Segment {
   void insert_keyframe(FrameRecord& frame, const Appearances& appearances);
   void begin_adjustment();
   void take_over_adjustment();
-  void carry_frames(const std::vector<Pose>& before);
   void thin_keyframes();
   void refresh_frames();
   void register_backwards(int count);

@@ -31,7 +31,7 @@ class ImageStage {
   /// Wall time spent so far [ms].
   double time_ms() const { return time_ms_; }
 
-  /// Images that OpenCV refused to work on; each counts as one that shows nothing.
+  /// Images that could not be worked on; each counts as one that shows nothing.
   std::int64_t failures() const { return failures_; }
   /// The last of them, in words.
   const std::string& failure() const { return failure_; }
@@ -45,6 +45,8 @@ class ImageStage {
  private:
   /// Fills in what is to be seen in an image that shows something: observations, descriptions.
   virtual void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) = 0;
+
+  ImageCondition inspect(const cv::Mat& grey);
 
   ImageInspector inspector_;
   FieldSeparation fields_;

@@ -253,10 +253,13 @@ TEST(BoardStage, GoesOnAfterADetectorThatThrows) {
     }
   };
   BoardStage stage(std::make_unique<Throwing>());
+  test::BoardImages images(kBoard, kCamera);
+  Frame frame;
   TrackedFrame tracked;
   std::vector<std::size_t> corners;
   for (std::int64_t i = 0; i < 3; ++i) {
-    stage.process(Frame{}, tracked);
+    frame.grey = images.image(board_from_eye(0.3 * static_cast<double>(i)).inverse());
+    stage.process(frame, tracked);
     EXPECT_EQ(tracked.index, i);
     corners.push_back(tracked.observations.size());
   }

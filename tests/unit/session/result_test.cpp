@@ -33,7 +33,7 @@ CalibrationResult full_result() {
   result.reprojection_px = 0.31;
   result.methods.push_back({"andreff", result.solution, {0.2, 3, 4, 5}, 1.5});
   result.methods.push_back({"failed", std::nullopt, {}, 0.5});
-  result.frames = {500, 490, 120, 3};
+  result.frames = {500, 490, 120, 3, 6, 4, 2, 9, 5};
   result.features = {250.5, 4321};
   result.timings_ms = {2500, 900, 80, 20000};
   return result;

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/reconstruction/reconstruction.hpp"
+#include "daemon/session/eye_source.hpp"
 #include "daemon/session/image_stage.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "drivers/recording/recording.hpp"
@@ -35,21 +35,21 @@ std::map<std::int64_t, std::string> files_of(const std::filesystem::path& folder
   return files;
 }
 
-Reconstruction reconstruct(const std::filesystem::path& folder) {
+Reconstruction reconstruct(const std::filesystem::path& folder, IntrinsicsMode intrinsics) {
   Recording recording = open_recording(folder);
   if (!recording.camera_model) {
     throw InputError(fmt::format("{}: has no camera.json", folder.string()));
   }
   if (const auto problem = recording.camera->open()) throw InputError(*problem);
   const auto images = make_image_stage(std::nullopt, recording.mask);
-  IncrementalReconstruction reconstruction(*recording.camera_model);
+  const auto eye = make_eye_source(std::nullopt, *recording.camera_model, intrinsics, {});
   Frame frame;
   TrackedFrame tracked;
   while (recording.camera->grab(frame, std::chrono::milliseconds(0)) == GrabStatus::kFrame) {
     images->process(frame, tracked);
-    reconstruction.add(tracked);
+    eye->add(tracked);
   }
-  return reconstruction.finish();
+  return eye->finish();
 }
 
 void write_poses(const std::filesystem::path& path, const Reconstruction& result,
@@ -66,14 +66,24 @@ void write_poses(const std::filesystem::path& path, const Reconstruction& result
   }
 }
 
-void run(const std::filesystem::path& folder, const std::filesystem::path& out) {
+void write_lens(const std::filesystem::path& path, const Lens& lens) {
+  const CameraModel& camera = lens.camera;
+  std::ofstream(path) << fmt::format("{} f {:.1f} centre {:.1f} {:.1f} k1 {:.4f} k2 {:.4f}\n",
+                                     lens.observable ? "believed" : "unobservable", camera.fx,
+                                     camera.cx, camera.cy, camera.distortion[0],
+                                     camera.distortion[1]);
+}
+
+void run(const std::filesystem::path& folder, const std::filesystem::path& out, bool free_lens) {
   std::filesystem::create_directories(out);
   const Stopwatch stopwatch;
   const std::clock_t cpu_start = std::clock();
-  const Reconstruction result = reconstruct(folder);
+  const Reconstruction result =
+      reconstruct(folder, free_lens ? IntrinsicsMode::kEstimate : IntrinsicsMode::kFixed);
   const double cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   std::ofstream(out / "seconds") << fmt::format("{:.3f} {:.3f}\n", 1e-3 * stopwatch.elapsed_ms(),
                                                 cpu_s);
+  write_lens(out / "camera.txt", result.lens);
   write_poses(out / "poses.csv", result, files_of(folder));
   fmt::print(stderr, "{} frames in {} parts, {} points, {:.3f} px\n", result.frames.size(),
              result.parts, result.points, result.reprojection_px);
@@ -82,12 +92,13 @@ void run(const std::filesystem::path& folder, const std::filesystem::path& out) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    fmt::print(stderr, "usage: reconstruction_poses RECORDING OUT\n");
+  const std::string lens = argc == 4 ? argv[3] : "known";
+  if (argc < 3 || argc > 4 || (lens != "known" && lens != "free")) {
+    fmt::print(stderr, "usage: reconstruction_poses RECORDING OUT [known|free]\n");
     return static_cast<int>(ExitCode::kUsage);
   }
   try {
-    run(argv[1], argv[2]);
+    run(argv[1], argv[2], lens == "free");
   } catch (const std::exception& error) {
     fmt::print(stderr, "reconstruction_poses: {}\n", error.what());
     return static_cast<int>(ExitCode::kInput);

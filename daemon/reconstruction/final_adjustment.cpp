@@ -11,7 +11,7 @@ namespace handeye {
 namespace {
 
 constexpr int kMostRounds = 3;
-constexpr int kFewestIterations = 5;
+constexpr int kFewestIterations = 4;
 constexpr int kMostIterations = 50;
 /// Small scenes, whose frames lie far apart, need more steps and can afford them: iterations times
 /// observations.

@@ -22,7 +22,7 @@ struct ReconstructionOptions {
   double min_resection_ratio{0.3};  ///< inliers among the points a frame sees
   double keyframe_parallax_px{
       24};                 ///< median movement since the last keyframe that makes a new one
-  int max_keyframes{80};  ///< of a part; beyond it they are thinned evenly
+  int max_keyframes{100};  ///< of a part; beyond it they are thinned evenly
   int local_window{8};     ///< keyframes adjusted when one is added
   double robust_px{1.5};   ///< Huber loss of the adjustments
   int threads{1};          ///< Ceres with two is not reproducible

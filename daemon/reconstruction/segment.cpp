@@ -19,6 +19,9 @@ namespace {
 constexpr int kMaxMisses = 5;
 /// A frame that sees less than this share of the last keyframe's points becomes a keyframe itself.
 constexpr double kKeyframeInlierRatio = 0.7;
+/// Where frames are few every one counts: after so long a smaller movement makes a keyframe.
+constexpr std::int64_t kLongAgo_ns = 300'000'000;
+constexpr double kMovedPx = 8.0;
 constexpr int kWindowIterations = 6;
 /// Trust of the points that a part starts with: several views have agreed on them.
 constexpr int kStartTrust = 4;
@@ -125,8 +128,9 @@ bool Segment::register_frame(FrameRecord& frame, const Pose& predicted) {
 bool Segment::wants_keyframe(const FrameRecord& frame) const {
   if (frame.inliers < kKeyframeInlierRatio * keyframe_inliers_) return true;
   const FrameRecord* before = frames_.find(scene_.keyframes.back().frame_index);
-  return median_movement_px(camera_, common_features(*before, frame)) >=
-         options_.keyframe_parallax_px;
+  const double moved_px = median_movement_px(camera_, common_features(*before, frame));
+  const bool long_ago = frame.timestamp_ns - before->timestamp_ns >= kLongAgo_ns;
+  return moved_px >= (long_ago ? kMovedPx : options_.keyframe_parallax_px);
 }
 
 void Segment::insert_keyframe(FrameRecord& frame, const Appearances& appearances) {

@@ -46,9 +46,9 @@ void take_patch(const std::int16_t* pixels, std::ptrdiff_t stride, const float* 
 }
 
 HANDEYE_VECTOR_CLONES
-void multiply(const float* weights, float* values) {
+void weigh_less(float constant, const float* weights, float* values) {
   for (int at = 0; at < Patch::kSide * Patch::kStride; at += lanes::kLanes) {
-    lanes::store(lanes::load(values + at) * lanes::load(weights + at), values + at);
+    lanes::store((lanes::load(values + at) - constant) * lanes::load(weights + at), values + at);
   }
 }
 
@@ -192,9 +192,10 @@ void PatchBasis::take(const PaddedPlane<std::int16_t>& image, int x, int y) {
 }
 
 void PatchBasis::weigh(const Patch& weights) {
-  multiply(weights.value.data(), grey.value.data());
-  multiply(weights.value.data(), dx.value.data());
-  multiply(weights.value.data(), dy.value.data());
+  const float* weight = weights.value.data();
+  weigh_less(weighted_mean(grey.value.data(), weight), weight, grey.value.data());
+  weigh_less(0, weight, dx.value.data());
+  weigh_less(0, weight, dy.value.data());
 }
 
 PatchProducts products(const Patch& image, const PatchBasis& basis, const Patch& weights) {

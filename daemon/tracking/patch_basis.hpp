@@ -24,14 +24,15 @@ struct PatchBasis {
   using ShiftVector = Eigen::Matrix<double, 6, 1>;
   using ShiftMatrix = Eigen::Matrix<double, 6, 6>;
 
-  Patch grey;    ///< less its mean
+  Patch grey;    ///< less its mean over the pixels that count
   Patch dx, dy;  ///< per px
 
   /// Takes the patch around a pixel, the derivatives by central differences. The patch and a pixel
   /// around it must lie within the padding.
   void take(const PaddedPlane<std::int16_t>& image, int x, int y);
 
-  /// Takes out the pixels whose weight is 0.
+  /// Takes out the pixels whose weight is 0, and of the others' grey values their own mean: what is
+  /// under a mask has no say in how much contrast the rest has.
   void weigh(const Patch& weights);
 };
 

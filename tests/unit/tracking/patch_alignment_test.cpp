@@ -101,6 +101,34 @@ TEST(Appearance, IsFoundThoughAThirdOfItIsMasked) {
   EXPECT_EQ(warp.centre, without.centre);
 }
 
+/// A fit to what is only half the same picture, with the right third of it masked.
+PatchFit fit_to_half_alike(const Appearance& first) {
+  cv::Mat other = image_of(original());
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      auto& pixel = other.at<std::uint8_t>(y, x);
+      pixel = cv::saturate_cast<std::uint8_t>(pixel + 45 * std::sin(0.9 * x) * std::cos(0.8 * y));
+    }
+  }
+  cv::Mat mask(kSize, CV_8UC1, cv::Scalar(255));
+  mask.colRange(kX + 4, kSize.width) = 0;
+  AffineWarp warp = original();
+  return first.align(pyramid_of(other, mask), warp);
+}
+
+TEST(Appearance, IsNoMoreAlikeForAStepUnderTheMask) {
+  const PatchFit plain = fit_to_half_alike(appearance());
+  ASSERT_TRUE(plain.found);
+  EXPECT_LT(plain.correlation, 0.9F);
+  cv::Mat stepped = image_of(original());
+  stepped.colRange(kX + 7, kSize.width) = 0;
+  Appearance with_step;
+  ASSERT_TRUE(with_step.take(pyramid_of(stepped), kX, kY));
+  const PatchFit fit = fit_to_half_alike(with_step);
+  ASSERT_TRUE(fit.found);
+  EXPECT_NEAR(fit.correlation, plain.correlation, 1e-4F);
+}
+
 TEST(Appearance, IsNotFoundInAnotherPictureOrInNone) {
   cv::Mat noise(kSize, CV_8UC1);
   cv::RNG random(4);

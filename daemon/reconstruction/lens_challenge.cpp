@@ -17,6 +17,14 @@ constexpr double kChanceSigmas = 4.0;
 /// Two adjustments that stop at the same minimum still stop this far apart.
 constexpr double kSameFocal = 0.01;
 constexpr double kClearlyWorse = 1.15;
+constexpr double kAnyFocal = 10.0;  ///< standard deviation, in focal lengths, that says nothing
+
+/// No belief about the focal length: a challenger must be driven back by the images alone.
+LensPrior without_focal(const LensPrior& prior, double focal_px) {
+  LensPrior free = prior;
+  free.sigma[kFocal] = kAnyFocal * focal_px;
+  return free;
+}
 
 }  // namespace
 
@@ -31,7 +39,7 @@ bool refutes_other_lenses(const CameraModel& camera, double focal_sigma_px, cons
     Scene followed = scene;
     followed.refresh_rays(other);
     adjust(other, {.robust_px = options.robust_px, .max_iterations = 15}, followed);
-    fit_lens(prior, true, options, followed, other);
+    fit_lens(without_focal(prior, focal_px(camera)), true, options, followed, other);
     if (std::abs(focal_px(other) - focal_px(camera)) <= same_px) return true;
     return scene_fit(other, options.max_reprojection_px, followed).error_px >
            kClearlyWorse * error_px;

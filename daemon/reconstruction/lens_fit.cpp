@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/reconstruction/lens_fit.hpp"
 
+#include <algorithm>
+#include <numbers>
+
 #include "daemon/reconstruction/scene_points.hpp"
 
 namespace handeye {
@@ -8,6 +11,9 @@ namespace {
 
 /// Under a lens that is not right yet, what is right is off by more than it will be.
 constexpr double kWideGate = 2.0;
+/// Features are not better than this, nor, in a lens that is nearly right, worse than that.
+constexpr double kLeastNoisePx = 0.1;
+constexpr double kMostNoisePx = 0.5;
 constexpr int kPolishRounds = 4;
 constexpr int kSettled = 5;  ///< observations that may still change sides
 
@@ -61,10 +67,13 @@ void fit_lens(const LensPrior& prior, bool last_stage, const ReconstructionOptio
 
 void polish_lens(const LensPrior& prior, const ReconstructionOptions& options, Scene& scene,
                  CameraModel& camera) {
+  LensFreedom freedom{whole_lens(), prior};
   for (int round = 0; round < kPolishRounds; ++round) {
     const int changed = sort_out(camera, point_options(options, 1.0), scene);
     const bool last = round > 0 && (changed < kSettled || round + 1 == kPolishRounds);
-    adjust({whole_lens(), prior}, adjustment_options(options, last), scene, camera);
+    const double error_px = adjust(freedom, adjustment_options(options, last), scene, camera);
+    // The prior counts for as much as it would beside features as good as these.
+    freedom.noise_px = std::clamp(error_px / std::numbers::sqrt2, kLeastNoisePx, kMostNoisePx);
     if (last) break;
   }
   sort_out(camera, point_options(options, 1.0), scene);

@@ -48,7 +48,9 @@ class ReducedSystem {
     const double unknowns = static_cast<double>(lens_at_) + 3.0 * tracks_used_ - 7.0;
     const double freedom = 2.0 * observations_ - unknowns;
     if (poses_ < 3 || freedom < 1.0) return std::nullopt;
-    add_prior();
+    const double noise_px = std::sqrt(squares_px2_ / freedom);
+    const double variance_px2 = std::pow(std::max(noise_px, kLeastNoisePx), 2);
+    add_prior(variance_px2);
     fix_gauge();
     const Eigen::LDLT<Eigen::MatrixXd> factor(normal_.selfadjointView<Eigen::Lower>());
     if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
@@ -57,8 +59,7 @@ class ReducedSystem {
     by_lens = factor.solve(by_lens);
 
     LensInformation information;
-    information.noise_px = std::sqrt(squares_px2_ / freedom);
-    const double variance_px2 = std::pow(std::max(information.noise_px, kLeastNoisePx), 2);
+    information.noise_px = noise_px;
     const LensMatrix inverse = by_lens.bottomRows<kLensParameters>();
     const double shrunk = 2.0 * observations_ / freedom;
     information.covariance =
@@ -131,11 +132,12 @@ class ReducedSystem {
     }
   }
 
-  void add_prior() {
+  /// Weighed against the noise as it was found: what only the prior knows keeps the prior's sigma.
+  void add_prior(double variance_px2) {
     for (int i = 0; i < kLensParameters; ++i) {
       const double sigma = is_free(i) ? freedom_.prior.sigma[i] : 1.0;
       // What is held must only not make the system singular; its solution is thrown away.
-      normal_(lens_at_ + i, lens_at_ + i) += std::pow(freedom_.noise_px / sigma, 2);
+      normal_(lens_at_ + i, lens_at_ + i) += variance_px2 / (sigma * sigma);
     }
   }
 

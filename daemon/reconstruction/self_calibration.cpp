@@ -25,6 +25,8 @@ constexpr int kMaxRounds = 5;
 /// Above this change anywhere in the image a new reconstruction is worth its time.
 constexpr double kBeginAgainPx = 4.0;
 constexpr double kSettledPx = 0.05;
+/// A lens that still moves by more in the last round has not been found.
+constexpr double kUnsettledPx = 0.5;
 constexpr int kMaxKeyframes = 120;
 /// So many show a valley as well as all do.
 constexpr int kChallengeKeyframes = 24;
@@ -119,6 +121,7 @@ void SelfCalibration::begin_again(const CameraModel& camera) {
 
 /// Reconstruction and adjustment of the lens in turn, until the lens stays.
 Reconstruction SelfCalibration::settle() {
+  settled_ = false;
   Reconstruction reconstruction = working_->finish();
   for (int round = 0; round < kMaxRounds && !reconstruction.frames.empty(); ++round) {
     CameraModel lens = camera_;
@@ -126,6 +129,7 @@ Reconstruction SelfCalibration::settle() {
     if (round == 0) fit_lens(prior_, true, options_, scene, lens);
     polish_lens(prior_, options_, scene, lens);
     const double change_px = largest_difference_px(camera_, lens);
+    settled_ = change_px < kUnsettledPx;
     if (change_px < kSettledPx) break;
     if (change_px > kBeginAgainPx) {
       begin_again(lens);
@@ -153,7 +157,7 @@ void SelfCalibration::judge_lens(Reconstruction& reconstruction) const {
                 .k1 = sigma[kK1],
                 .k2 = sigma[kK2],
                 .distortion_px = distortion_sigma_px(camera_, covariance)};
-  lens.observable = lens.sigma.focal_px <= kMaxFocalSigma * focal_px(camera_) &&
+  lens.observable = settled_ && lens.sigma.focal_px <= kMaxFocalSigma * focal_px(camera_) &&
                     lens.sigma.distortion_px <= kMaxDistortionSigmaPx * camera_.width / 640.0 &&
                     refutes_other_lenses(
                         camera_, lens.sigma.focal_px, prior_, options_,

@@ -45,6 +45,7 @@ class SelfCalibration {
   std::unique_ptr<IncrementalReconstruction> working_;
   std::vector<TrackedFrame> frames_;  ///< all there were
   bool started_{false};               ///< the working lens is more than a guess
+  bool settled_{false};               ///< the last rounds of finish() agreed on the lens
   double moved_px_{0};                ///< image movement summed over the frames
   double look_at_px_{0};              ///< a first lens is looked for when it reaches this
 };

@@ -46,16 +46,18 @@ Vector6d difference(const Pose& from, const Pose& to) {
 
 }  // namespace
 
-Matrix6d lens_covariance(const Reconstruction& reconstruction, const Estimate& estimate,
-                         const PoseBuffer& hand) {
+std::optional<Matrix6d> lens_covariance(const Reconstruction& reconstruction,
+                                        const Estimate& estimate, const PoseBuffer& hand) {
   Matrix6d covariance = Matrix6d::Zero();
+  if (reconstruction.lens.mode == IntrinsicsMode::kFixed) return covariance;
   const auto& shifted = reconstruction.lens.shifted_keyframes;
-  if (shifted.empty() || !estimate.likelihood) return covariance;
+  // What was shifted is the largest part; of an answer from another it says nothing.
+  if (shifted.empty() || !estimate.likelihood || estimate.likelihood->part != 0) return {};
   const auto nominal = solve(counterparts(reconstruction.frames, shifted.front()), estimate, hand);
-  if (!nominal) return covariance;
+  if (!nominal) return {};
   for (const std::vector<RegisteredFrame>& frames : shifted) {
     const auto moved = solve(frames, estimate, hand);
-    if (!moved) continue;
+    if (!moved) return {};
     const Vector6d change = difference(nominal->hand_from_eye, moved->hand_from_eye);
     covariance += change * change.transpose();
   }

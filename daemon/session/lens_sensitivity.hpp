@@ -13,9 +13,10 @@ namespace handeye {
 /// dt [mm]) as there. An error of the lens moves all poses of the eye together, which their
 /// residuals do not show. So hand-eye is solved again with the keyframes as they would be with the
 /// lens off by one standard deviation, along each of its principal directions; the outer products
-/// of what the answer moves by add up. Zero where the lens was given, or nothing was solved.
-Matrix6d lens_covariance(const Reconstruction& reconstruction, const Estimate& estimate,
-                         const PoseBuffer& hand);
+/// of what the answer moves by add up. Zero where the lens was given; nothing where it was not and
+/// what it adds is not known.
+std::optional<Matrix6d> lens_covariance(const Reconstruction& reconstruction,
+                                        const Estimate& estimate, const PoseBuffer& hand);
 
 /// How far the eye turns for each degree that the hand turns: 1, whatever hand_from_eye is, unless
 /// the lens is wrong. Nothing where the hand hardly turns.

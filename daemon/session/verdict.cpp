@@ -57,7 +57,7 @@ bool looked_past_board(const Evidence& evidence) {
 bool lens_is_known(const Evidence& evidence) {
   const Lens& lens = evidence.reconstruction.lens;
   if (lens.mode == IntrinsicsMode::kFixed) return true;
-  if (!lens.observable) return false;
+  if (!lens.observable || !evidence.lens_covariance) return false;
   const auto ratio = rotation_ratio(evidence.estimate.observations);
   return !ratio || std::abs(*ratio - 1.0) <= kMaxRotationExcess;
 }
@@ -94,6 +94,8 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
 Reason or_the_images(Reason reason, const Evidence& evidence) {
   if (reason == Reason::kNone) return reason;
   switch (evidence.images.prevailing()) {
+    case ImageCondition::kUnusable:
+      return Reason::kCameraLost;
     case ImageCondition::kDark:
       return Reason::kImageDark;
     case ImageCondition::kFrozen:
@@ -134,7 +136,8 @@ Finding conclude(const Evidence& evidence) {
   }
   if (evidence.estimate.observations.size() < fewest) return {Reason::kTrackerLost, {}};
   const Judgement judgement = judged(evidence);
-  const Matrix6d covariance = judgement.covariance + evidence.lens_covariance;
+  const Matrix6d covariance =
+      judgement.covariance + evidence.lens_covariance.value_or(Matrix6d::Zero());
   MotionProblem problem = judgement.problem;
   if (problem == MotionProblem::kNone && !is_wanted(covariance, evidence.wanted)) {
     problem = MotionProblem::kUncertain;

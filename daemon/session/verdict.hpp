@@ -21,8 +21,9 @@ struct Evidence {
   std::span<const Pose> hand_path;  ///< room_from_hand, wherever it was tracked
   const Reconstruction& reconstruction;
   const Estimate& estimate;
-  Matrix6d lens_covariance{Matrix6d::Zero()};  ///< what an uncertain lens adds to hand_from_eye's
-  PoseNoise noise;                             ///< of the tracker
+  /// What an uncertain lens adds to hand_from_eye's; nothing: not known.
+  std::optional<Matrix6d> lens_covariance{Matrix6d::Zero()};
+  PoseNoise noise;  ///< of the tracker
   WantedSigma wanted;
 };
 

@@ -30,13 +30,27 @@ void ParallelLoop::run_erased(std::size_t count, void* callable, Call call) {
   // A loop that one thread finishes at a stroke is not worth waking anybody for.
   const bool alone = helpers_.empty() || count <= kAtATime;
   if (!alone) {
-    busy_ = static_cast<std::uint32_t>(helpers_.size());
+    inside_ = kOpen;
     ++round_;
     round_.notify_all();
   }
   work();
   if (alone) return;
-  for (std::uint32_t busy = busy_; busy != 0; busy = busy_) busy_.wait(busy);
+  // All passes are taken. Those who took some are waited for; nobody else comes in.
+  inside_ &= ~kOpen;
+  for (std::uint32_t inside = inside_; inside != 0; inside = inside_) inside_.wait(inside);
+}
+
+bool ParallelLoop::enter() {
+  std::uint32_t inside = inside_;
+  while ((inside & kOpen) != 0) {
+    if (inside_.compare_exchange_weak(inside, inside + 1)) return true;
+  }
+  return false;
+}
+
+void ParallelLoop::leave() {
+  if (--inside_ == 0) inside_.notify_one();
 }
 
 void ParallelLoop::work() {
@@ -54,8 +68,9 @@ void ParallelLoop::help() {
     round_.wait(seen);
     seen = round_;
     if (ending_) return;
+    if (!enter()) continue;
     work();
-    if (--busy_ == 0) busy_.notify_one();
+    leave();
   }
 }
 

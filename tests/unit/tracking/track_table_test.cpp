@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/tracking/track_table.hpp"
 
-#include <numeric>
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "daemon/tracking/motion_model.hpp"
-#include "daemon/tracking/parallel_loop.hpp"
 
 namespace handeye {
 namespace {
@@ -49,20 +48,6 @@ TEST(MotionModel, FindsTheMovementOfMostAndNoneOfFew) {
   std::fill(usable.begin() + 7, usable.end(), 0);
   model.fit(from, to, usable);
   EXPECT_FALSE(model.known());
-}
-
-TEST(ParallelLoop, RunsEveryPassOnce) {
-  for (const int threads : {1, 2, 4}) {
-    ParallelLoop loop(threads);
-    for (const std::size_t count : {0U, 1U, 7U, 8U, 9U, 1000U}) {
-      std::vector<int> runs(count, 0);
-      for (int round = 0; round < 20; ++round) {
-        loop.run(count, [&](std::size_t i) { ++runs[i]; });
-      }
-      EXPECT_EQ(std::accumulate(runs.begin(), runs.end(), 0), 20 * static_cast<int>(count));
-      for (const int passes : runs) EXPECT_EQ(passes, 20);
-    }
-  }
 }
 
 }  // namespace

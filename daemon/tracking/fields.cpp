@@ -28,6 +28,12 @@ constexpr double kClearlyExplained = 0.25;
 constexpr double kClearMovement_px = 0.35;
 // Clear images in excess of unclear ones that settle it: one or two may be an accident.
 constexpr int kSettled = 3;
+/// Then only so many images are looked at. Of a scope held still, or of three accidents, none is
+/// clear any more; of one that moves now and then some are. Interlacing that was given up too early
+/// is noticed again with the next movement, and until then nothing was combed.
+constexpr int kLookedAtEvery = 4;
+constexpr int kMostEvidence = 25;
+constexpr int kClearCounts = 5;  ///< unclear ones
 
 /// Sums of `together` pixels of a line.
 void sum_pixels(const cv::Mat& grey, int y, int together, std::vector<int>& sums) {
@@ -156,17 +162,20 @@ void keep_even_field(const cv::Mat& grey, cv::Mat& progressive) {
 }
 
 const cv::Mat& FieldSeparation::take(const cv::Mat& grey) {
-  if (!interlaced_) weigh(meter_.measure(grey));
+  if (!interlaced_ || images_++ % kLookedAtEvery == 0) weigh(meter_.measure(grey).is_clear());
   if (!interlaced_) return grey;
   keep_even_field(grey, progressive_);
   return progressive_;
 }
 
-void FieldSeparation::weigh(const Combing& combing) {
-  if (combing.is_clear()) {
-    interlaced_ = ++evidence_ >= kSettled;
-  } else {
-    evidence_ = std::max(0, evidence_ - 1);
+void FieldSeparation::weigh(bool clear) {
+  const int gained = clear ? (interlaced_ ? kClearCounts : 1) : -1;
+  evidence_ = std::clamp(evidence_ + gained, 0, kMostEvidence);
+  if (interlaced_) {
+    interlaced_ = evidence_ > 0;
+  } else if (evidence_ >= kSettled) {
+    interlaced_ = true;
+    evidence_ = kMostEvidence;
   }
 }
 

@@ -57,16 +57,18 @@ class FieldSeparation {
   const cv::Mat& take(const cv::Mat& grey);
 
   /// Whether only one field of the last image was used. While the camera stands still there is no
-  /// telling, nor need; once some images were clear every one is taken for interlaced.
+  /// telling, nor need; once some images were clear every one is taken for interlaced, until none
+  /// has been clear for a hundred images.
   bool used_one_field() const { return interlaced_; }
 
  private:
-  void weigh(const Combing& combing);
+  void weigh(bool clear);
 
   CombingMeter meter_;
   cv::Mat progressive_;
   int evidence_{0};
   bool interlaced_{false};
+  std::int64_t images_{0};  ///< since there was interlacing
 };
 
 }  // namespace handeye

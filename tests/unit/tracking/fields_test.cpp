@@ -82,6 +82,35 @@ TEST(FieldSeparation, NoticesInterlacedImagesWithinThree) {
   EXPECT_TRUE(fields.used_one_field());
 }
 
+TEST(FieldSeparation, IsGivenUpWhenAllIsClearAgain) {
+  const MovingTexture texture(kSize);
+  FieldSeparation fields;
+  for (int frame = 0; frame < 3; ++frame) {
+    fields.take(woven(texture.image(frame), texture.image(frame + 1)));
+  }
+  ASSERT_TRUE(fields.used_one_field());
+  int one_field = 0;
+  for (int frame = 0; frame < 150; ++frame) {
+    fields.take(texture.image(frame % 40));
+    one_field += fields.used_one_field();
+  }
+  EXPECT_GT(one_field, 50) << "a rest of two seconds is no reason";
+  EXPECT_LT(one_field, 110);
+  EXPECT_FALSE(fields.used_one_field());
+}
+
+TEST(FieldSeparation, HoldsWhileMovementComesAndGoes) {
+  const MovingTexture texture(kSize);
+  FieldSeparation fields;
+  for (int frame = 0; frame < 400; ++frame) {
+    const bool moves = frame % 50 < 25;
+    const int shown = frame % 25;
+    fields.take(moves ? woven(texture.image(shown), texture.image(shown + 1))
+                      : texture.image(shown));
+    EXPECT_EQ(fields.used_one_field(), frame >= 2) << frame;
+  }
+}
+
 TEST(FieldSeparation, LeavesProgressiveImagesAlone) {
   const MovingTexture texture(kSize);
   for (const double sigma : {0.0, 1.5, 5.0}) {

@@ -28,7 +28,9 @@ constexpr double kErodeFraction = 0.04;
 /// Share of the images that must show a pixel lit: a flare or two do not widen the field.
 constexpr double kLitShare = 0.15;
 constexpr int kFrequentVotes = 8;  ///< in a row; then ever more images are passed over
-constexpr int kMostSkipped = 32;
+constexpr int kMostSkipped = 16;
+/// Then all votes count half: a field that changed shows within a minute, a wider one in seconds.
+constexpr int kMostVotes = 32;
 /// Fields that agree better than this (intersection over union) are the same.
 constexpr double kSameField = 0.95;
 /// Share of what lies outside the field that must be lit for there to be none.
@@ -49,10 +51,10 @@ int grey_quantile(const cv::Mat& grey, double fraction) {
   return 255;
 }
 
-cv::Mat filled(const std::vector<cv::Point>& outline, cv::Size size) {
-  cv::Mat region = cv::Mat::zeros(size, CV_8UC1);
+void fill(const std::vector<cv::Point>& outline, cv::Size size, cv::Mat& region) {
+  region.create(size, CV_8UC1);
+  region.setTo(0);
   cv::drawContours(region, std::vector<std::vector<cv::Point>>{outline}, 0, 255, cv::FILLED);
-  return region;
 }
 
 /// Away from the rim, in the image's size.
@@ -64,10 +66,6 @@ cv::Mat mask_of(const cv::Mat& field, cv::Size size) {
   cv::Mat mask;
   cv::resize(inner, mask, size, 0, 0, cv::INTER_LINEAR);
   return mask > 254;
-}
-
-bool are_same(const cv::Mat& a, const cv::Mat& b) {
-  return cv::countNonZero(a & b) > kSameField * cv::countNonZero(a | b);
 }
 
 }  // namespace
@@ -107,33 +105,42 @@ bool FieldOfView::vote(const cv::Mat& grey) {
                            static_cast<float>(bright_level - black);
     }
   }
-  ++votes_;
+  if (++votes_ == kMostVotes) forget_half();
   return true;
 }
 
-cv::Mat FieldOfView::lit() const {
-  return lit_votes_ >= std::max(1.0, kLitShare * votes_);
+void FieldOfView::forget_half() {
+  votes_ /= 2;
+  lit_votes_ *= 0.5;
+  brightness_ *= 0.5;
+}
+
+bool FieldOfView::is_as_before() {
+  if (field_.empty()) return false;
+  cv::bitwise_and(found_, field_, common_);
+  const int common = cv::countNonZero(common_);
+  return common > kSameField * (cv::countNonZero(found_) + cv::countNonZero(field_) - common);
+}
+
+/// Whether so much is lit outside the field that there is none.
+bool FieldOfView::is_lit_outside() {
+  cv::bitwise_and(lit_, field_, common_);
+  const int lit_outside = cv::countNonZero(lit_) - cv::countNonZero(common_);
+  return lit_outside >= kLitOutside * (static_cast<int>(field_.total()) - cv::countNonZero(field_));
 }
 
 void FieldOfView::reconsider(cv::Size size) {
-  const cv::Mat now_lit = lit();
-  const auto outline = find_field_outline(now_lit, brightness_);
+  cv::compare(lit_votes_, std::max(1.0, kLitShare * votes_), lit_, cv::CMP_GE);
+  const auto outline = find_field_outline(lit_, brightness_);
   if (!outline.empty()) {
-    const cv::Mat field = filled(outline, now_lit.size());
-    if (!field_.empty() && are_same(field, field_)) return;
-    field_ = field;
-    mask_ = mask_of(field, size);
-    return;
+    fill(outline, lit_.size(), found_);
+    if (is_as_before()) return;
+    found_.copyTo(field_);
+    mask_ = mask_of(field_, size);
+  } else if (!field_.empty() && is_lit_outside()) {
+    field_.release();
+    mask_.release();
   }
-  if (field_.empty()) return;
-  const cv::Mat outside = ~field_;
-  if (cv::countNonZero(now_lit & outside) < kLitOutside * cv::countNonZero(outside)) return;
-  field_.release();
-  mask_.release();
-}
-
-cv::Mat find_field_of_view(const cv::Mat& grey) {
-  return FieldOfView().look(grey);
 }
 
 }  // namespace handeye

@@ -11,7 +11,8 @@ namespace handeye {
 /// One image may mislead: it is dark, a cavity touches the rim, light flares beyond it. So images
 /// vote: what is lit in some of them belongs to the field, what is lit in hardly any does not. The
 /// answer is looked at again ever more rarely, and changed only where it was clearly wrong, for
-/// features near a rim that moves would come and go with it. One stream of images.
+/// features near a rim that moves would come and go with it. Old votes fade: another field, of a
+/// scope that was exchanged, is found within a minute. One stream of images.
 class FieldOfView {
  public:
   /// `given`: the mask to use whatever the images show; empty: it is found.
@@ -27,20 +28,23 @@ class FieldOfView {
  private:
   bool is_due();
   bool vote(const cv::Mat& grey);
-  cv::Mat lit() const;
+  void forget_half();
   void reconsider(cv::Size size);
+  bool is_as_before();
+  bool is_lit_outside();
 
   bool given_{false};
   cv::Mat mask_;
   cv::Mat field_;  ///< the mask before erosion, small
   int frames_to_skip_{0};
-  int votes_{0};
+  int votes_{0};          ///< those that have faded by as much
   cv::Mat1f lit_votes_;   ///< images in which a pixel was lit; small
   cv::Mat1f brightness_;  ///< sum over them, relative to the bright parts
+  // Kept for their memory; small.
   cv::Mat small_;
+  cv::Mat lit_;
+  cv::Mat found_;
+  cv::Mat common_;
 };
-
-/// The same from one image alone.
-cv::Mat find_field_of_view(const cv::Mat& grey);
 
 }  // namespace handeye

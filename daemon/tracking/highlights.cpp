@@ -76,10 +76,7 @@ void take_away(const cv::Mat& field_of_view, int y, const std::uint8_t* spots, c
 
 const cv::Mat& Highlights::usable(const cv::Mat& grey, const cv::Mat& field_of_view) {
   shrink(grey);
-  if (!find()) {
-    share_ = 0;
-    return field_of_view;
-  }
+  if (!find()) return field_of_view;
   write(grey.size(), field_of_view);
   return usable_;
 }
@@ -136,18 +133,13 @@ bool Highlights::find() {
 
 void Highlights::write(cv::Size size, const cv::Mat& field_of_view) {
   usable_.create(size, CV_8UC1);
-  std::int64_t taken = 0;
   for (int y = 0; y < spots_.rows(); ++y) {
     const std::uint8_t* spot = spots_.row(y - kBeyond) - kBeyond;
-    int taken_here = 0;
-    for (int x = 0; x < spots_.columns(); ++x) taken_here += spot[x] & 1;
-    taken += taken_here;
     widen(spot, side_, spots_.columns(), line_.data());
     for (int line = y * side_; line < std::min((y + 1) * side_, size.height); ++line) {
       take_away(field_of_view, line, line_.data(), usable_);
     }
   }
-  share_ = static_cast<double>(taken) / (static_cast<double>(spots_.rows()) * spots_.columns());
 }
 
 }  // namespace handeye

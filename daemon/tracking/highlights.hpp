@@ -23,9 +23,6 @@ class Highlights {
   /// until the next call and as long as `field_of_view` is.
   const cv::Mat& usable(const cv::Mat& grey, const cv::Mat& field_of_view);
 
-  /// Of the last image: the share of it that highlights took.
-  double share() const { return share_; }
-
  private:
   void shrink(const cv::Mat& grey);
   bool find();
@@ -38,7 +35,6 @@ class Highlights {
   PaddedGrid spots_;  ///< 255: a highlight
   std::vector<std::uint8_t> line_;
   cv::Mat usable_;
-  double share_{0};
 };
 
 }  // namespace handeye

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string_view>
-
 namespace handeye {
 
 /// What is wrong with an image as a whole, if anything.
@@ -13,16 +11,15 @@ enum class ImageCondition {
   kFrozen,      ///< the last image once more: no new information, whatever its time stamp says
   kInterlaced,  ///< two fields of different instants woven together; one of them was used
   kBlurred,     ///< far less sharp than those before it
+  kUnusable,    ///< empty, not of 8 bit grey, or one that could not be worked on
 };
 
-inline constexpr int kImageConditions = 6;
-
-/// "good", "dark", ...
-std::string_view condition_word(ImageCondition condition);
+inline constexpr int kImageConditions = 7;
 
 /// Whether such an image says nothing about where the camera is at its time.
 constexpr bool shows_nothing(ImageCondition condition) {
-  return condition == ImageCondition::kDark || condition == ImageCondition::kFrozen;
+  return condition == ImageCondition::kDark || condition == ImageCondition::kFrozen ||
+         condition == ImageCondition::kUnusable;
 }
 
 }  // namespace handeye

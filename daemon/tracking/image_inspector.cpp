@@ -61,13 +61,14 @@ bool is_burnt_out(const Histogram& histogram) {
 }  // namespace
 
 ImageCondition ImageInspector::inspect(const cv::Mat& grey) {
+  if (grey.empty() || grey.type() != CV_8UC1) return ImageCondition::kUnusable;
   blocks_.take(grey);
   const Histogram histogram(blocks_.means());
   if (is_dark(histogram)) return ImageCondition::kDark;
   if (repeated_.is_repetition(grey)) return ImageCondition::kFrozen;
   if (is_burnt_out(histogram)) return ImageCondition::kBright;
-  sharpness_now_ = sharpness_.beside_recent(blocks_.means());
-  return sharpness_now_ < kBlurredBelow ? ImageCondition::kBlurred : ImageCondition::kGood;
+  const double sharpness = sharpness_.beside_recent(blocks_.means());
+  return sharpness < kBlurredBelow ? ImageCondition::kBlurred : ImageCondition::kGood;
 }
 
 }  // namespace handeye

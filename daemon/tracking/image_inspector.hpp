@@ -14,18 +14,14 @@ namespace handeye {
 /// tenth of a millisecond. One stream of images; memory is kept.
 class ImageInspector {
  public:
-  /// Looks at the next image (CV_8UC1). The first that applies: kDark, kFrozen, kBright, kBlurred;
-  /// else kGood. Interlacing is FieldSeparation's to see.
+  /// Looks at the next image. The first that applies: kUnusable (empty, or not CV_8UC1), kDark,
+  /// kFrozen, kBright, kBlurred; else kGood. Interlacing is FieldSeparation's to see.
   ImageCondition inspect(const cv::Mat& grey);
-
-  /// Of the last image that was neither dark nor frozen, beside those before it; 0..1.
-  double sharpness() const { return sharpness_now_; }
 
  private:
   BlockMeans blocks_;
   RepeatedImage repeated_;
   Sharpness sharpness_;
-  double sharpness_now_{1};
 };
 
 }  // namespace handeye

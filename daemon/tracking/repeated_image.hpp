@@ -21,9 +21,6 @@ class RepeatedImage {
   /// Looks at the next image (CV_8UC1); some rows of it are read. True: a repetition.
   bool is_repetition(const cv::Mat& grey);
 
-  /// The next image counts as new, whatever it shows.
-  void forget() { rows_.clear(); }
-
  private:
   void remember(const cv::Mat& grey);
 

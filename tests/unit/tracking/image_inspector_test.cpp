@@ -179,11 +179,18 @@ TEST(ImageInspector, TakesImagesOfAnySize) {
   }
 }
 
-TEST(ImageCondition, HasAWordForEach) {
-  EXPECT_EQ(condition_word(ImageCondition::kFrozen), "frozen");
-  EXPECT_EQ(condition_word(ImageCondition::kBlurred), "blurred");
+TEST(ImageInspector, HasNoUseForWhatIsNotGrey) {
+  ImageInspector inspector;
+  EXPECT_EQ(inspector.inspect({}), ImageCondition::kUnusable);
+  for (const int type : {CV_8UC3, CV_16UC1, CV_32FC1}) {
+    EXPECT_EQ(inspector.inspect(cv::Mat::ones(480, 640, type)), ImageCondition::kUnusable);
+  }
+}
+
+TEST(ImageCondition, TellsWhatShowsNothing) {
   EXPECT_TRUE(shows_nothing(ImageCondition::kDark));
   EXPECT_TRUE(shows_nothing(ImageCondition::kFrozen));
+  EXPECT_TRUE(shows_nothing(ImageCondition::kUnusable));
   EXPECT_FALSE(shows_nothing(ImageCondition::kInterlaced));
 }
 

@@ -43,7 +43,7 @@ bool Sequence::next(SequenceFrame& frame) {
   frame.frozen = fate.frozen(next_number_);
   frame.dark = fate.dark;
   view_.draw(next_number_, frame.grey);
-  frame.depth_mm = view_.depth_mm();
+  view_.depth_mm().copyTo(frame.depth_mm);
   ++next_number_;
   return true;
 }

@@ -23,8 +23,8 @@ struct SequenceFrame {
   Pose scene_from_eye{Pose::Identity()};
   bool frozen{false};
   bool dark{false};
-  /// z in the eye frame [mm] behind every pixel, 0 where an instrument hides the scene. The memory
-  /// is the sequence's, until the next frame; of no use where frozen or dark.
+  /// z in the eye frame [mm] behind every pixel, 0 where an instrument hides the scene; of no use
+  /// where frozen or dark.
   cv::Mat1f depth_mm;
 };
 

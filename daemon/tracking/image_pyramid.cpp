@@ -23,6 +23,21 @@ void halve(const cv::Mat& image, cv::Mat& half) {
   }
 }
 
+/// What may be looked at of a mask's blocks of `side` pixels: those of which all may.
+void shrink_mask(const cv::Mat& mask, int side, cv::Size size, cv::Mat& shrunk) {
+  shrunk.create(size, CV_8UC1);
+  for (int y = 0; y < size.height; ++y) {
+    auto* out = shrunk.ptr<std::uint8_t>(y);
+    std::fill_n(out, size.width, std::uint8_t{255});
+    for (int row = 0; row < side; ++row) {
+      const auto* in = mask.ptr<std::uint8_t>(side * y + row);
+      for (int x = 0; x < size.width; ++x) {
+        for (int i = 0; i < side; ++i) out[x] &= in[side * x + i];
+      }
+    }
+  }
+}
+
 /// (1 2 1) x (1 2 1) of bytes, unnormalised: sixteenths.
 void smooth(const cv::Mat& image, std::vector<std::int16_t>& sums, GreyPlane& smoothed) {
   const int columns = image.cols;
@@ -71,7 +86,7 @@ void decimate(const GreyPlane& fine, std::vector<std::int16_t>& sums, GreyPlane&
 
 /// A pixel may be looked at when all that it was smoothed from may; one pixel in `step`.
 template <typename Row>
-void erode(const Row& mask_row, int step, UsablePlane& usable) {
+void erode(const Row& mask_row, int columns, int step, UsablePlane& usable) {
   const cv::Size size = usable.size();
   for (int y = 0; y < size.height; ++y) {
     const std::uint8_t* above = mask_row(step * y - 1);
@@ -85,9 +100,10 @@ void erode(const Row& mask_row, int step, UsablePlane& usable) {
       out[x] =
           static_cast<std::uint8_t>(all_of(step * x - 1) & all_of(step * x) & all_of(step * x + 1));
     }
-    out[0] = static_cast<std::uint8_t>(all_of(0) & all_of(1));
-    const int last = size.width - 1;
-    out[last] = static_cast<std::uint8_t>(all_of(step * last - 1) & all_of(step * last));
+    for (const int x : {0, size.width - 1}) {
+      out[x] = static_cast<std::uint8_t>(all_of(std::max(step * x - 1, 0)) & all_of(step * x) &
+                                         all_of(std::min(step * x + 1, columns - 1)));
+    }
   }
 }
 
@@ -117,33 +133,24 @@ void ImagePyramid::build(const cv::Mat& grey, const cv::Mat& mask, int halvings,
   smooth(*base, column_sums_, grey_[0]);
   for (int k = 1; k < levels_; ++k) decimate(grey_[index(k - 1)], column_sums_, grey_[index(k)]);
 
-  const bool same_mask = mask.empty() ? whole_image_usable_ : same(mask, mask_);
+  const bool same_mask =
+      mask.empty() ? whole_image_usable_ : !whole_image_usable_ && same(mask, mask_);
   if (new_size || !same_mask) build_usable(mask, halvings);
 }
 
 void ImagePyramid::build_usable(const cv::Mat& mask, int halvings) {
   whole_image_usable_ = mask.empty();
-  if (mask.empty()) {
-    mask_.release();
-  } else {
-    mask.copyTo(mask_);
-  }
+  // Highlights come and go: the copy's memory stays while there is no mask.
+  if (!mask.empty()) mask.copyTo(mask_);
   const cv::Size size = grey_[0].size();
   UsablePlane& base = usable_[0];
   base.resize(size);
   if (mask.empty()) {
     for (int y = 0; y < size.height; ++y) std::fill_n(base.at(0, y), size.width, 255);
-  } else if (halvings == 0) {
-    erode([&](int y) { return mask.ptr(std::clamp(y, 0, mask.rows - 1)); }, 1, base);
   } else {
-    const int scale = 1 << halvings;
-    for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) {
-        *base.at(x, y) = static_cast<std::uint8_t>(
-            mask.at<std::uint8_t>(scale * y, scale * x) &
-            mask.at<std::uint8_t>(scale * y + scale - 1, scale * x + scale - 1));
-      }
-    }
+    if (halvings > 0) shrink_mask(mask, 1 << halvings, size, shrunk_mask_);
+    const cv::Mat& own = halvings > 0 ? shrunk_mask_ : mask;
+    erode([&](int y) { return own.ptr(std::clamp(y, 0, own.rows - 1)); }, own.cols, 1, base);
   }
   std::int64_t usable_pixels = 0;
   for (int y = 0; y < size.height; ++y) {
@@ -157,8 +164,8 @@ void ImagePyramid::build_usable(const cv::Mat& mask, int halvings) {
   for (int k = 1; k < levels_; ++k) {
     usable_[index(k)].resize(grey_[index(k)].size());
     const UsablePlane& fine = usable_[index(k - 1)];
-    erode([&](int y) { return fine.at(0, std::clamp(y, 0, fine.size().height - 1)); }, 2,
-          usable_[index(k)]);
+    erode([&](int y) { return fine.at(0, std::clamp(y, 0, fine.size().height - 1)); },
+          fine.size().width, 2, usable_[index(k)]);
   }
 }
 

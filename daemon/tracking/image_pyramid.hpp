@@ -36,6 +36,9 @@ class ImagePyramid {
   /// May all pixels of [left, right] x [top, bottom] be looked at? Within image and padding.
   bool all_usable(int level, int left, int top, int right, int bottom) const;
 
+  /// The image halved to level 0's size, not smoothed; empty without halvings.
+  const cv::Mat& shrunk() const { return shrunk_; }
+
   /// Fraction of level 0 that may be looked at.
   double usable_share() const { return usable_share_; }
 
@@ -50,7 +53,8 @@ class ImagePyramid {
   std::array<PaddedPlane<std::uint8_t>, kMaxLevels> usable_;
   cv::Mat shrunk_, shrunk_twice_;  ///< of a wide image
   std::vector<std::int16_t> column_sums_;
-  cv::Mat mask_;
+  cv::Mat mask_;         ///< as given last
+  cv::Mat shrunk_mask_;  ///< of a wide image
 };
 
 }  // namespace handeye

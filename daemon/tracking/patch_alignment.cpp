@@ -128,7 +128,8 @@ PatchFit align_shift(const ImagePyramid& before, const ImagePyramid& now, int le
   const Eigen::Vector2f offset =
       position - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y));
   constexpr int kReach = Patch::kRadius + 1;
-  if (!before.grey(level).holds(x - kReach, y - kReach, x - kReach + Patch::kStride, y + kReach)) {
+  if (!before.grey(level).holds(x - kReach, y - kReach, x - kReach + Patch::kStride + 1,
+                                y + kReach)) {
     return {};
   }
   const Eigen::Vector2f there(static_cast<float>(x), static_cast<float>(y));
@@ -172,7 +173,7 @@ PatchFit align_shift(const ImagePyramid& before, const ImagePyramid& now, int le
     if (step.norm() < kShiftConverged || iteration + 1 == kMaxShiftIterations) {
       found = centre + offset;
       return judge(sums.with_itself, with_basis.dot(change), gain * gain * normal(2, 2), sigma,
-                   Patch::kPixels, gain);
+                   normal(3, 3), gain);
     }
   }
   return {};

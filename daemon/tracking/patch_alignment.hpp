@@ -10,7 +10,7 @@ namespace handeye {
 /// How well a patch was found again.
 struct PatchFit {
   bool found{false};     ///< converged within the image, conditioned and with a credible gain
-  float correlation{0};  ///< of the image with the patch, light taken out; 1 = the same picture
+  float correlation{0};  ///< of the image with the patch, gain and offset taken out; 1 = the same
   float sigma_px{0};     ///< standard deviation of the position that the residuals suggest
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "daemon/geometry/median.hpp"
 #include "daemon/handeye/linear_parts.hpp"
 #include "daemon/handeye/pairing.hpp"
 
@@ -37,12 +38,6 @@ std::optional<HandEyeSolution> linear_solution(std::span<const PosePair> poses,
   }
   solution.hand_from_eye = eye_from_hand.inverse();
   return solution;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double median_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "daemon/geometry/median.hpp"
 #include "daemon/handeye/pairing.hpp"
 
 namespace handeye {
@@ -13,15 +15,12 @@ namespace {
 constexpr int kMedianRounds = 5;
 constexpr std::size_t kPathPartners = 20;  // that each pose is compared with
 
-/// Component by component.
-Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& vectors) {
+Eigen::Vector3d median_by_component(const std::vector<Eigen::Vector3d>& vectors) {
   Eigen::Vector3d result;
   std::vector<double> values(vectors.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < vectors.size(); ++k) values[k] = vectors[k][axis];
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    result[axis] = *middle;
+    result[axis] = median(values);
   }
   return result;
 }
@@ -54,9 +53,8 @@ double scale_of_path(std::span<const PosePair> poses, const HandEyeSolution& sta
     ratios.push_back(distance->scene_units / distance->room_mm);
   }
   if (ratios.empty()) return start.scale_units_per_mm;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::isnormal(*middle) ? *middle : start.scale_units_per_mm;
+  const double middle = median(std::move(ratios));
+  return std::isnormal(middle) ? middle : start.scale_units_per_mm;
 }
 
 void place_scene(std::span<const CentredPose> poses, PoseUnknowns& unknowns) {
@@ -74,13 +72,14 @@ void place_scene(std::span<const CentredPose> poses, PoseUnknowns& unknowns) {
     for (std::size_t k = 0; k < poses.size(); ++k) {
       differences[k] = log_so3((rotation.conjugate() * rotations[k]).toRotationMatrix());
     }
-    rotation = (rotation * Eigen::Quaterniond(exp_so3(median(differences)))).normalized();
+    rotation =
+        (rotation * Eigen::Quaterniond(exp_so3(median_by_component(differences)))).normalized();
   }
   for (std::size_t k = 0; k < poses.size(); ++k) {
     differences[k] = poses[k].hand_in_room_mm + poses[k].room_from_hand * unknowns.eye_in_hand_mm -
                      rotation * poses[k].eye_in_scene_mm;
   }
-  unknowns.scene_in_room_mm = median(differences);
+  unknowns.scene_in_room_mm = median_by_component(differences);
 }
 
 }  // namespace handeye

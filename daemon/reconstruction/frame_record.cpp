@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/reconstruction/frame_record.hpp"
 
-#include "daemon/reconstruction/median.hpp"
+#include "daemon/geometry/median.hpp"
 #include "daemon/reconstruction/projection.hpp"
 
 namespace handeye {

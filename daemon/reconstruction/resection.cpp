@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <opencv2/calib3d.hpp>
 
-#include "daemon/reconstruction/median.hpp"
+#include "daemon/geometry/median.hpp"
 #include "daemon/reconstruction/projection.hpp"
 
 namespace handeye {

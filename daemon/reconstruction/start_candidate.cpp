@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/geometry/median.hpp"
 #include "daemon/reconstruction/bundle_adjustment.hpp"
-#include "daemon/reconstruction/median.hpp"
 #include "daemon/reconstruction/projection.hpp"
 #include "daemon/reconstruction/scene_points.hpp"
 #include "daemon/reconstruction/triangulation.hpp"

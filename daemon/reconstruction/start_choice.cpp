@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "daemon/reconstruction/median.hpp"
+#include "daemon/geometry/median.hpp"
 
 namespace handeye {
 namespace {

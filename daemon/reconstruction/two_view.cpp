@@ -7,7 +7,7 @@
 #include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 
-#include "daemon/reconstruction/median.hpp"
+#include "daemon/geometry/median.hpp"
 
 namespace handeye {
 namespace {

@@ -15,8 +15,9 @@ namespace handeye {
 namespace {
 
 constexpr int kWindowFrames = 8;
-/// Two views fit many a motion; those between them are what refutes a wrong one.
-constexpr Eigen::Index kFewestFrames = 4;
+/// In the window and in the scene: two views fit many a motion; those between them are what refutes
+/// a wrong one.
+constexpr int kFewestFrames = 4;
 /// Median movement [px at kReferenceFocalPx] below which the picture stands still: twice what
 /// half a pixel of noise in both views looks like.
 constexpr double kStillPx = 2.0;
@@ -70,6 +71,13 @@ std::vector<StartCandidate> build_candidates(const CameraModel& camera,
   return candidates;
 }
 
+/// Whether enough of the frames and of what they show speak for a candidate, and nothing against.
+bool acceptable(const StartCandidate& candidate, double min_parallax_rad, double threshold_rad) {
+  return std::ssize(candidate.scene.keyframes) >= kFewestFrames &&
+         candidate.inlier_ratio >= kMinInlierRatio && candidate.parallax_rad >= min_parallax_rad &&
+         !contradicted(candidate.scene, threshold_rad);
+}
+
 }  // namespace
 
 StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions& options,
@@ -108,9 +116,7 @@ StartAttempt start_scene(const CameraModel& camera, const ReconstructionOptions&
   }
   const auto candidates = build_candidates(camera, options, window, hypotheses);
   const auto chosen = choose_start(candidates);
-  if (!chosen || candidates[*chosen].inlier_ratio < kMinInlierRatio ||
-      candidates[*chosen].parallax_rad < min_parallax_rad ||
-      contradicted(candidates[*chosen].scene, 2.0 * threshold_rad)) {
+  if (!chosen || !acceptable(candidates[*chosen], min_parallax_rad, 2.0 * threshold_rad)) {
     return attempt;
   }
   StartCandidate complete = complete_candidate(camera, options, window, candidates[*chosen]);

@@ -38,10 +38,12 @@ double parallax_of(const Scene& scene, const Track& track, std::vector<PosedRay>
   return triangulation_angle_rad(rays, track.point_scene);
 }
 
+/// What frames show whose pose is unknown is as wrong as can be: else the hypothesis that fits the
+/// fewest frames had the smallest error.
 void measure(const CameraModel& camera, double max_px, StartCandidate& candidate) {
   const Scene& scene = candidate.scene;
-  double sum = 0.0;
-  int count = 0;
+  int count = candidate.missing_observations;
+  double sum = count * max_px * max_px;
   int inliers = 0;
   std::vector<double> parallaxes;
   std::vector<PosedRay> rays;
@@ -88,7 +90,12 @@ StartCandidate make_candidate(const CameraModel& camera, const ReconstructionOpt
   Scene& scene = candidate.scene;
   for (Eigen::Index f = 0; f < window.frame_count(); ++f) {
     const auto& pose = hypothesis.eye_from_scene[static_cast<std::size_t>(f)];
-    if (pose) scene.add_keyframe(camera, window.thinned(f, most_tracks), *pose, 0.0);
+    const FrameRecord frame = window.thinned(f, most_tracks);
+    if (pose) {
+      scene.add_keyframe(camera, frame, *pose, 0.0);
+    } else {
+      candidate.missing_observations += static_cast<int>(frame.observations.size());
+    }
   }
   normalise(scene);
   find_points(camera, options, scene);
@@ -115,11 +122,14 @@ StartCandidate complete_candidate(const CameraModel& camera, const Reconstructio
                                   const StartWindow& window, const StartCandidate& candidate) {
   StartCandidate complete;
   complete.method = candidate.method;
-  for (const Keyframe& keyframe : candidate.scene.keyframes) {
-    const auto frame = std::find_if(
-        window.frames.begin(), window.frames.end(),
-        [&](const FrameRecord* record) { return record->index == keyframe.frame_index; });
-    complete.scene.add_keyframe(camera, **frame, keyframe.eye_from_scene, 0.0);
+  const auto& known = candidate.scene.keyframes;
+  for (const FrameRecord* frame : window.frames) {
+    const auto keyframe = std::ranges::find(known, frame->index, &Keyframe::frame_index);
+    if (keyframe != known.end()) {
+      complete.scene.add_keyframe(camera, *frame, keyframe->eye_from_scene, 0.0);
+    } else {
+      complete.missing_observations += static_cast<int>(frame->observations.size());
+    }
   }
   normalise(complete.scene);
   find_points(camera, options, complete.scene);

@@ -12,9 +12,11 @@ namespace handeye {
 /// A hypothesis with its points, measured against the images.
 struct StartCandidate {
   StartMethod method{StartMethod::kTwoViews};
-  Scene scene;             ///< a keyframe for each frame whose pose the hypothesis knows
-  double error_px{0};      ///< rms over all observations, each capped at max_reprojection_px
-  double inlier_ratio{0};  ///< share of the observations that agree with a point in front
+  Scene scene;                  ///< a keyframe for each frame whose pose the hypothesis knows
+  int missing_observations{0};  ///< in the frames of the window whose pose it does not know
+  /// Rms over all observations, each capped at max_reprojection_px; the missing count as that.
+  double error_px{0};
+  double inlier_ratio{0};  ///< share of all observations that agree with a point in front
   double parallax_rad{0};  ///< median over the points of the largest angle between two rays
 };
 

@@ -11,6 +11,7 @@ namespace {
 constexpr double kClearMargin = 1.2;
 constexpr double kSameRotationRad = 0.02;
 constexpr double kSameCentre = 0.25;
+constexpr int kFewestCommon = 3;  // keyframes: one has no motion, two no path
 
 /// Median depth of the points in the first keyframe.
 double median_depth(const Scene& scene) {
@@ -36,6 +37,7 @@ bool same_solution(const Scene& a, const Scene& b) {
   const double depth_a = median_depth(a);
   const double depth_b = median_depth(b);
   if (!(depth_a > 0) || !(depth_b > 0)) return false;
+  int common = 0;
   double extent = 0.0;
   double difference = 0.0;
   for (const Keyframe& of_a : a.keyframes) {
@@ -43,6 +45,7 @@ bool same_solution(const Scene& a, const Scene& b) {
       return other.frame_index == of_a.frame_index;
     });
     if (of_b == b.keyframes.end()) continue;
+    ++common;
     const Pose pose_a = seen_from_first(a, of_a, depth_a);
     const Pose pose_b = seen_from_first(b, *of_b, depth_b);
     if (rotation_angle_rad(pose_a.linear(), pose_b.linear()) > kSameRotationRad) return false;
@@ -51,7 +54,7 @@ bool same_solution(const Scene& a, const Scene& b) {
     extent = std::max({extent, centre_a.norm(), centre_b.norm()});
     difference = std::max(difference, (centre_a - centre_b).norm());
   }
-  return difference <= kSameCentre * extent;
+  return common >= kFewestCommon && difference <= kSameCentre * extent;
 }
 
 std::optional<std::size_t> choose_start(const std::vector<StartCandidate>& candidates) {

@@ -10,7 +10,8 @@
 namespace handeye {
 
 /// Whether two scenes tell the same cameras and depths apart from scale: rotations within 0.02 rad,
-/// centres, in units of the median depth, within a quarter of their extent.
+/// centres, in units of the median depth, within a quarter of their extent. Scenes that share fewer
+/// than three frames do not.
 bool same_solution(const Scene& a, const Scene& b);
 
 /// Position of the candidate with the smallest error, if it is at least 1.2 times smaller than that

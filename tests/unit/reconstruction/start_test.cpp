@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <span>
-
 #include <gtest/gtest.h>
 
 #include "daemon/reconstruction/projection.hpp"
 #include "daemon/reconstruction/scene_start.hpp"
-#include "daemon/reconstruction/start_choice.hpp"
 #include "daemon/reconstruction/start_consensus.hpp"
-#include "daemon/reconstruction/start_factorisation.hpp"
 #include "daemon/reconstruction/start_search.hpp"
-#include "daemon/reconstruction/start_two_views.hpp"
-#include "tests/unit/reconstruction/synthetic_tracks.hpp"
+#include "daemon/reconstruction/start_window.hpp"
+#include "tests/unit/reconstruction/synthetic_stretch.hpp"
 
 namespace handeye {
 namespace {
 
+using test::records_of;
+using test::stretch;
 using test::SyntheticOptions;
 using test::SyntheticTracks;
-
-std::vector<FrameRecord> records_of(const SyntheticTracks& tracks) {
-  std::vector<FrameRecord> records;
-  for (const TrackedFrame& frame : tracks.frames) records.push_back(make_record(frame));
-  return records;
-}
-
-/// The motion from another moment on for each seed, 30 frames of it.
-SyntheticTracks stretch(const test::Motion& motion, SyntheticOptions options, unsigned seed) {
-  options.seed = seed;
-  options.frames = 30;
-  return test::synthesize(options,
-                          [&motion, seed](double time_s) { return motion(time_s + 0.37 * seed); });
-}
 
 bool is_right(const Scene& scene, const SyntheticTracks& truth, double rotation_deg = 1.0,
               double centre = 0.25) {
@@ -173,27 +157,6 @@ TEST(SceneStart, SaysWhyItRefuses) {
 TEST(SceneStart, IsRightOrRefusedForwards) {
   const Starts starts = try_starts(test::forward(), {}, 10);
   EXPECT_EQ(starts.wrong, 0);
-}
-
-TEST(StartChoice, IsNotMadeBetweenEquals) {
-  const SyntheticTracks tracks = stretch(test::free_hand(), {}, 3);
-  const auto records = records_of(tracks);
-  const StartAttempt attempt = start_scene(tracks.camera, {}, records);
-  ASSERT_TRUE(attempt.scene);
-  StartCandidate found;
-  found.scene = *attempt.scene;
-  found.error_px = 0.5;
-  StartCandidate other = found;
-  other.error_px = 0.55;
-  EXPECT_EQ(choose_start({found, other}), 0U);  // the same solution twice
-  for (Keyframe& keyframe : other.scene.keyframes) {
-    keyframe.eye_from_scene.linear() =
-        exp_so3(log_so3(keyframe.eye_from_scene.linear()).cwiseProduct(Eigen::Vector3d(-1, -1, 1)));
-  }
-  EXPECT_FALSE(same_solution(found.scene, other.scene));
-  EXPECT_FALSE(choose_start({found, other}));
-  other.error_px = 0.7;
-  EXPECT_EQ(choose_start({other, found}), 1U);
 }
 
 }  // namespace

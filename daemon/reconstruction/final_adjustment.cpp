@@ -37,9 +37,7 @@ void adjust_finally(const CameraModel& camera, const ReconstructionOptions& opti
   adjustment.threads = options.threads;
   adjustment.function_tolerance = kTolerance;
   for (int round = 0; round < kMostRounds; ++round) {
-    for (int k = 1; k < static_cast<int>(scene.keyframes.size()); ++k) {
-      triangulate_tracks(camera, points, k, scene);
-    }
+    triangulate_all(camera, points, scene);
     judge_observations(camera, points, 0, scene);
     drop_distrusted_points(scene);
     const auto observations = static_cast<double>(observation_count(scene));

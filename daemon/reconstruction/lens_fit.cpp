@@ -23,11 +23,8 @@ PointOptions point_options(const ReconstructionOptions& options, double gate) {
 
 /// Wins points anew and judges observations; returns how many changed.
 int sort_out(const CameraModel& camera, const PointOptions& points, Scene& scene) {
-  int changed = 0;
-  for (int k = 1; k < static_cast<int>(scene.keyframes.size()); ++k) {
-    changed += triangulate_tracks(camera, points, k, scene);
-  }
-  return changed + judge_observations(camera, points, 0, scene);
+  const int won = triangulate_all(camera, points, scene);
+  return won + judge_observations(camera, points, 0, scene);
 }
 
 AdjustmentOptions adjustment_options(const ReconstructionOptions& options, bool last) {

@@ -36,9 +36,7 @@ Scene scene_of(const CameraModel& camera, const Reconstruction& reconstruction,
     scene.add_keyframe(camera, make_record(*frame), keyframe->eye_from_scene, 0.0);
   }
   const PointOptions points{options.max_reprojection_px, options.min_triangulation_deg};
-  for (int k = 1; k < static_cast<int>(scene.keyframes.size()); ++k) {
-    triangulate_tracks(camera, points, k, scene);
-  }
+  triangulate_all(camera, points, scene);
   judge_observations(camera, points, 0, scene);
   return scene;
 }
@@ -63,6 +61,19 @@ SceneFit scene_fit(const CameraModel& camera, double max_reprojection_px, const 
   }
   const double count = std::max(1, seen_often);
   return {std::sqrt(squares_px2 / count), inliers / count};
+}
+
+double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance,
+                           const Scene& scene) {
+  double largest_px = 0.0;
+  for (const Track& track : scene.tracks) {
+    if (!track.has_point) continue;
+    for (const TrackObservation& seen : track.observations) {
+      if (!seen.inlier) continue;
+      largest_px = std::max(largest_px, distortion_sigma_px(camera, covariance, seen.ray));
+    }
+  }
+  return largest_px;
 }
 
 }  // namespace handeye

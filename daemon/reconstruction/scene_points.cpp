@@ -61,6 +61,10 @@ bool triangulate_track(const CameraModel& camera, const PointOptions& options, c
   return false;
 }
 
+bool may_win_point(const Track& track) {
+  return !track.has_point && !track.refused && track.observations.size() >= 2;
+}
+
 }  // namespace
 
 int triangulate_tracks(const CameraModel& camera, const PointOptions& options, int keyframe,
@@ -69,8 +73,16 @@ int triangulate_tracks(const CameraModel& camera, const PointOptions& options, i
   std::vector<PosedRay> rays;
   for (const int position : scene.keyframes[static_cast<std::size_t>(keyframe)].tracks) {
     Track& track = scene.tracks[static_cast<std::size_t>(position)];
-    if (track.has_point || track.refused || track.observations.size() < 2) continue;
-    if (triangulate_track(camera, options, scene, track, rays)) ++won;
+    if (may_win_point(track) && triangulate_track(camera, options, scene, track, rays)) ++won;
+  }
+  return won;
+}
+
+int triangulate_all(const CameraModel& camera, const PointOptions& options, Scene& scene) {
+  int won = 0;
+  std::vector<PosedRay> rays;
+  for (Track& track : scene.tracks) {
+    if (may_win_point(track) && triangulate_track(camera, options, scene, track, rays)) ++won;
   }
   return won;
 }

@@ -16,6 +16,9 @@ struct PointOptions {
 int triangulate_tracks(const CameraModel& camera, const PointOptions& options, int keyframe,
                        Scene& scene);
 
+/// The same over all tracks of the scene, each once.
+int triangulate_all(const CameraModel& camera, const PointOptions& options, Scene& scene);
+
 /// Judges anew which observations agree with their points, over all tracks seen in `first_keyframe`
 /// or later; points that keep fewer than two, or lose their parallax, are given up (the track may
 /// win another later). Returns how many observations changed sides.

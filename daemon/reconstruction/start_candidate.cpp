@@ -22,9 +22,7 @@ PointOptions point_options(const ReconstructionOptions& options) {
 }
 
 void find_points(const CameraModel& camera, const ReconstructionOptions& options, Scene& scene) {
-  for (int k = 1; k < static_cast<int>(scene.keyframes.size()); ++k) {
-    triangulate_tracks(camera, point_options(options), k, scene);
-  }
+  triangulate_all(camera, point_options(options), scene);
   judge_observations(camera, point_options(options), 0, scene);
 }
 

@@ -7,8 +7,11 @@
 namespace handeye {
 namespace {
 
-/// Movement [px at kReferenceFocalPx] after which a failed start is worth another attempt.
-constexpr double kRetryMovementPx = 4.0;
+/// Movement [px at kReferenceFocalPx] after which a failed start is worth another attempt: the
+/// first, by what factor more each next, and at most.
+constexpr double kFirstRetryPx = 4.0;
+constexpr double kRetryGrowth = 2.0;
+constexpr double kMostRetryPx = 32.0;
 /// Share of the newest frame's features wanted in the older one.
 constexpr double kCommonRatio = 0.5;
 
@@ -31,35 +34,50 @@ std::size_t StartSearch::oldest_with_common(const FrameRecord& newest, std::size
   return *nth;
 }
 
-bool StartSearch::moved_since_last_attempt(const std::vector<FrameRecord>& frames) const {
-  const auto pairs = common_features(frames[attempted_], frames.back());
-  return static_cast<int>(pairs.size()) < options_.min_common_features ||
-         median_movement_px(camera_, pairs) >= kRetryMovementPx;
+std::optional<double> StartSearch::moved_since_last_attempt_px(
+    const std::vector<FrameRecord>& frames) const {
+  if (!attempted_) return std::nullopt;
+  const auto pairs = common_features(frames[*attempted_], frames.back());
+  if (static_cast<int>(pairs.size()) < options_.min_common_features) return std::nullopt;
+  return median_movement_px(camera_, pairs);
 }
 
-StartAttempt StartSearch::look(const std::vector<FrameRecord>& frames) {
-  remember_first_seen(frames);
-  StartAttempt attempt;
+/// First with the older frame that shares plenty; if that gives no baseline, the oldest possible.
+StartAttempt StartSearch::attempt_with(const std::vector<FrameRecord>& frames) const {
   const FrameRecord& newest = frames.back();
   const auto fewest = static_cast<std::size_t>(options_.min_common_features);
-  if (frames.size() < 2 || newest.observations.size() < fewest) return attempt;
-  if (attempted_ > 0 && !moved_since_last_attempt(frames)) {
-    attempt.state = last_state_;
-    return attempt;
-  }
   const auto wanted = std::max(
       fewest,
       static_cast<std::size_t>(kCommonRatio * static_cast<double>(newest.observations.size())));
-  // First the older frame that shares plenty; if that gives no baseline, the oldest possible.
+  StartAttempt attempt;
   std::size_t tried = frames.size() - 1;
   for (const std::size_t common : {wanted, fewest}) {
     const std::size_t oldest = oldest_with_common(newest, common);
     if (oldest >= tried) continue;
     tried = oldest;
+    const bool costly_before = attempt.costly;
     attempt = start_scene(camera_, options_, std::span(frames).subspan(oldest));
-    if (attempt.scene) return attempt;
+    attempt.costly = attempt.costly || costly_before;
+    if (attempt.scene) break;
   }
-  if (attempt.costly) attempted_ = frames.size() - 1;
+  return attempt;
+}
+
+StartAttempt StartSearch::look(const std::vector<FrameRecord>& frames) {
+  remember_first_seen(frames);
+  StartAttempt attempt;
+  const auto seen = static_cast<int>(frames.back().observations.size());
+  if (frames.size() < 2 || seen < options_.min_common_features) return attempt;
+  const auto moved_px = moved_since_last_attempt_px(frames);
+  if (moved_px && *moved_px < retry_px_) {
+    attempt.state = last_state_;
+    return attempt;
+  }
+  attempt = attempt_with(frames);
+  if (attempt.costly) {
+    attempted_ = frames.size() - 1;
+    retry_px_ = moved_px ? std::min(kRetryGrowth * retry_px_, kMostRetryPx) : kFirstRetryPx;
+  }
   last_state_ = attempt.state;
   return attempt;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -12,7 +13,9 @@
 namespace handeye {
 
 /// Finds, while frames arrive, the two between which a reconstruction can start: against the newest
-/// the oldest that still shares enough features with it, for the widest baseline.
+/// the oldest that still shares enough features with it, for the widest baseline. What was refused
+/// is tried again after some movement, twice as much each time up to a bound, as long as the same
+/// scene is in view: attempts are costly, and where several failed the next few pixels hardly help.
 class StartSearch {
  public:
   StartSearch(const CameraModel& camera, const ReconstructionOptions& options)
@@ -24,12 +27,15 @@ class StartSearch {
  private:
   void remember_first_seen(const std::vector<FrameRecord>& frames);
   std::size_t oldest_with_common(const FrameRecord& newest, std::size_t common) const;
-  bool moved_since_last_attempt(const std::vector<FrameRecord>& frames) const;
+  /// At kReferenceFocalPx; nothing where the scene is another or there was no attempt.
+  std::optional<double> moved_since_last_attempt_px(const std::vector<FrameRecord>& frames) const;
+  StartAttempt attempt_with(const std::vector<FrameRecord>& frames) const;
 
   const CameraModel& camera_;
   const ReconstructionOptions& options_;
   std::unordered_map<std::int64_t, std::size_t> first_seen_;  ///< feature to position of the frame
-  std::size_t attempted_{0};                                  ///< frame of the last attempt
+  std::optional<std::size_t> attempted_;                      ///< frame of the last costly attempt
+  double retry_px_{0};  ///< movement since, from which on another follows
   ReconstructionState last_state_{ReconstructionState::kTooFewFeatures};
 };
 

@@ -20,14 +20,6 @@ double square(double x) {
   return x * x;
 }
 
-std::vector<std::size_t> parts_in_use(const PoseProblem& problem) {
-  std::vector<std::size_t> result;
-  for (std::size_t p = 0; p < problem.parts().size(); ++p) {
-    if (problem.in_use(p)) result.push_back(p);
-  }
-  return result;
-}
-
 double degrees_of_freedom(const PoseProblem& problem, std::size_t part) {
   return 6.0 * static_cast<double>(problem.poses_kept(part)) - problem.parameters_of(part);
 }

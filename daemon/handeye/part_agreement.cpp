@@ -15,14 +15,6 @@ namespace {
 constexpr double kGross = 60.0;
 constexpr double kByChance = 3.3;  // standard deviations of a chi2 that are no finding
 
-std::vector<std::size_t> parts_in_use(const PoseProblem& problem) {
-  std::vector<std::size_t> result;
-  for (std::size_t p = 0; p < problem.parts().size(); ++p) {
-    if (problem.in_use(p)) result.push_back(p);
-  }
-  return result;
-}
-
 void leave_out(PoseProblem& problem, std::size_t part) {
   std::vector<bool> kept = problem.kept();
   for (const std::size_t k : problem.parts()[part].members) kept[k] = false;

@@ -101,4 +101,13 @@ class PoseProblem {
   std::optional<std::size_t> held_scale_;
 };
 
+/// Their positions.
+inline std::vector<std::size_t> parts_in_use(const PoseProblem& problem) {
+  std::vector<std::size_t> result;
+  for (std::size_t p = 0; p < problem.parts().size(); ++p) {
+    if (problem.in_use(p)) result.push_back(p);
+  }
+  return result;
+}
+
 }  // namespace handeye

@@ -158,6 +158,8 @@ std::string_view picture_text(ImageCondition condition) {
       return "interlaced, one field is used";
     case ImageCondition::kBlurred:
       return "the picture is blurred";
+    case ImageCondition::kUnusable:
+      return "the picture cannot be used";
   }
   return "";
 }

@@ -8,8 +8,7 @@
 
 namespace handeye {
 
-/// Finds a board's corners in every image, as BoardEye takes them. In an image that OpenCV throws
-/// at there are none.
+/// Finds a board's corners in every image, as BoardEye takes them.
 class BoardStage final : public ImageStage {
  public:
   explicit BoardStage(const Board& board) : detector_(make_board_detector(board)) {}
@@ -17,7 +16,6 @@ class BoardStage final : public ImageStage {
 
  private:
   void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) override;
-  void find_corners(const cv::Mat& grey);
 
   std::unique_ptr<BoardDetector> detector_;
   std::vector<BoardCorner> corners_;

@@ -13,6 +13,8 @@ constexpr double kEnoughTranslation_mm = 15;
 /// About the picture itself; empty: it is as it should be, or as good as it can be.
 std::string guidance_about_picture(const Situation& situation) {
   switch (situation.images) {
+    case ImageCondition::kUnusable:
+      return "the camera's images cannot be used: check its settings and its cable";
     case ImageCondition::kDark:
       return "too dark: switch the light on, take the lens cap off";
     case ImageCondition::kFrozen:

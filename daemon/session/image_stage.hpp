@@ -25,28 +25,24 @@ class ImageStage {
   virtual ~ImageStage() = default;
 
   /// Frames in order of time, all of one size. In a dark or frozen one nothing is looked for; of an
-  /// interlaced one only one field is used.
+  /// interlaced one only one field is used; one that OpenCV throws at is unusable and shows
+  /// nothing.
   void process(const Frame& frame, TrackedFrame& tracked);
 
   /// Wall time spent so far [ms].
   double time_ms() const { return time_ms_; }
 
-  /// Images that could not be worked on; each counts as one that shows nothing.
+  /// Images that were unusable.
   std::int64_t failures() const { return failures_; }
   /// The last of them, in words.
   const std::string& failure() const { return failure_; }
-
- protected:
-  void count_failure(std::string what) {
-    ++failures_;
-    failure_ = std::move(what);
-  }
 
  private:
   /// Fills in what is to be seen in an image that shows something: observations, descriptions.
   virtual void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) = 0;
 
-  ImageCondition inspect(const cv::Mat& grey);
+  ImageCondition see(const Frame& frame, TrackedFrame& tracked);
+  void fail(std::string what, TrackedFrame& tracked);
 
   ImageInspector inspector_;
   FieldSeparation fields_;
@@ -57,7 +53,7 @@ class ImageStage {
 };
 
 /// Features of whatever is in view, or, given a board, its corners. `mask`: CV_8UC1, 255 = usable;
-/// empty: it is found in the first images. A board needs none.
+/// empty: it is found in the images, all along. A board needs none.
 std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask);
 
 }  // namespace handeye

@@ -239,6 +239,7 @@ TEST(BoardStage, FindsNothingInAnImageThatOpenCvThrowsAt) {
     stage.process(frame, tracked);
     EXPECT_TRUE(tracked.observations.empty());
     EXPECT_EQ(tracked.timestamp_ns, 5);
+    EXPECT_EQ(tracked.condition, ImageCondition::kUnusable);
     EXPECT_EQ(stage.failures(), 1);
     EXPECT_FALSE(stage.failure().empty());
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -116,6 +117,17 @@ TEST(LensError, TellsFocalLengthFromDistortion) {
   // At the corner farthest from the centre: f dk1 r^3.
   const Eigen::Vector2d ray = unproject(kCamera, {0, 479}).value();
   EXPECT_NEAR(error.distortion_px, 600 * 0.02 * std::pow(ray.norm(), 3), 0.1);
+}
+
+TEST(LensError, LooksNoFartherThanTheFieldOfView) {
+  CameraModel straighter = kCamera;
+  straighter.distortion[0] = -0.28;
+  cv::Mat1b middle(480, 640, static_cast<std::uint8_t>(0));
+  middle(cv::Rect(220, 140, 200, 200)).setTo(255);
+  EXPECT_LT(lens_error(kCamera, straighter, middle).distortion_px, 0.2);
+  EXPECT_GT(lens_error(kCamera, straighter, middle).distortion_px, 0.01);
+  EXPECT_EQ(lens_error(kCamera, straighter, cv::Mat1b(480, 640, 1)).distortion_px,
+            lens_error(kCamera, straighter).distortion_px);
 }
 
 }  // namespace

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <Eigen/Geometry>
 
 namespace handeye::sequences {
 
-LensError lens_error(const CameraModel& truth, const CameraModel& estimate) {
+LensError lens_error(const CameraModel& truth, const CameraModel& estimate,
+                     const cv::Mat& field_of_view) {
   constexpr int kSteps = 32;
   CameraModel same_pinhole = truth;
   same_pinhole.distortion = estimate.distortion;
@@ -20,6 +22,8 @@ LensError lens_error(const CameraModel& truth, const CameraModel& estimate) {
     for (int j = 0; j <= kSteps; ++j) {
       const Eigen::Vector2d pixel((truth.width - 1) * static_cast<double>(j) / kSteps,
                                   (truth.height - 1) * static_cast<double>(i) / kSteps);
+      const cv::Point nearest(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+      if (!field_of_view.empty() && field_of_view.at<std::uint8_t>(nearest) == 0) continue;
       const auto ray = unproject(truth, pixel);
       if (!ray) continue;
       const auto distance_px = [&](const CameraModel& camera) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <opencv2/core.hpp>
+
 #include "daemon/geometry/camera_model.hpp"
 
 namespace handeye::sequences {
@@ -18,6 +20,9 @@ struct LensError {
 };
 
 /// Over a grid of pixels that includes the image's corners. Both cameras have the same image size.
-LensError lens_error(const CameraModel& truth, const CameraModel& estimate);
+/// `field_of_view`: CV_8UC1 of that size, 0 where the scope shows nothing: what a lens does there
+/// no image can tell, and nobody will ask. Empty: the whole image counts.
+LensError lens_error(const CameraModel& truth, const CameraModel& estimate,
+                     const cv::Mat& field_of_view = {});
 
 }  // namespace handeye::sequences

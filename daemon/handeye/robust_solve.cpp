@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/geometry/median.hpp"
 #include "daemon/handeye/noise_fit.hpp"
 #include "daemon/handeye/usable.hpp"
 
@@ -67,16 +68,20 @@ std::vector<bool> within(const std::vector<double>& norms, double limit) {
   return result;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of the norms, those of a part.
 std::vector<double> of_part(const std::vector<double>& norms, const Part& part) {
   std::vector<double> result;
   for (const std::size_t k : part.members) result.push_back(norms[k]);
+  return result;
+}
+
+/// Of all poses of the parts in use; those of the others are infinite in every solution.
+std::vector<double> norms_in_use(const PoseProblem& problem, const PartNoise& noise) {
+  const std::vector<double> norms = problem.norms(noise);
+  std::vector<double> result;
+  for (const std::size_t p : parts_in_use(problem)) {
+    for (const std::size_t k : problem.parts()[p].members) result.push_back(norms[k]);
+  }
   return result;
 }
 
@@ -165,7 +170,7 @@ std::optional<HandEyeSolution> best_start(std::span<const HandEyeObservation> ob
     leave_out_far_ones(problem, options);
     problem.minimise(assumed);
     solutions.push_back(problem.solution(0));
-    norms.push_back(problem.norms(assumed));
+    norms.push_back(norms_in_use(problem, assumed));
     least_median = std::min(least_median, median(norms.back()));
   }
   std::optional<HandEyeSolution> best;

@@ -10,8 +10,10 @@
 #include "daemon/handeye/methods/methods.hpp"
 #include "daemon/handeye/movements_within_parts.hpp"
 #include "daemon/handeye/part_agreement.hpp"
+#include "daemon/handeye/parts.hpp"
 #include "daemon/handeye/pose_problem.hpp"
 #include "daemon/handeye/robust_solve.hpp"
+#include "daemon/handeye/scene_placement.hpp"
 #include "daemon/handeye/starts.hpp"
 #include "daemon/handeye/usable.hpp"
 
@@ -45,11 +47,21 @@ std::optional<MaximumLikelihoodResult> refine(std::span<const HandEyeObservation
   return result;
 }
 
+/// A start's scale is the largest part's: where its movements are of other parts only, by the path
+/// that the camera went in the largest, as they say.
+void to_largest_part(std::span<const HandEyeObservation> observations,
+                     std::vector<HandEyeSolution>& starts) {
+  const std::vector<PosePair> largest = poses_of(observations, parts_of(observations).front());
+  for (HandEyeSolution& start : starts) start.scale_units_per_mm = scale_of_path(largest, start);
+}
+
 std::optional<MaximumLikelihoodResult> from_movements(
-    std::span<const HandEyeObservation> observations, std::span<const Movement> movements,
+    std::span<const HandEyeObservation> observations, const MovementsOfParts& within,
     const MaximumLikelihoodOptions& options) {
   const ScaleMode scale = options.estimate_scale ? ScaleMode::kUnknown : ScaleMode::kKnown;
-  const auto start = best_start(observations, starting_solutions(movements, scale), options);
+  std::vector<HandEyeSolution> starts = starting_solutions(within.movements, scale);
+  if (options.estimate_scale && within.unit_part > 0) to_largest_part(observations, starts);
+  const auto start = best_start(observations, starts, options);
   if (!start) return std::nullopt;
   return refine(observations, *start, options);
 }
@@ -60,10 +72,11 @@ std::optional<HandEyeSolution> solve_as_method(const HandEyeProblem& problem, Sc
   observations.reserve(problem.poses.size());
   for (const PosePair& pair : problem.poses) observations.push_back({.poses = pair});
   if (!usable(observations)) return std::nullopt;
-  const auto result = from_movements(observations, problem.movements,
-                                     {.noise = problem.noise,
-                                      .estimate_noise = problem.estimate_noise,
-                                      .estimate_scale = scale == ScaleMode::kUnknown});
+  const auto result = from_movements(
+      observations, {.movements = {problem.movements.begin(), problem.movements.end()}},
+      {.noise = problem.noise,
+       .estimate_noise = problem.estimate_noise,
+       .estimate_scale = scale == ScaleMode::kUnknown});
   if (!result) return std::nullopt;
   return result->solution;
 }

@@ -2,6 +2,7 @@
 #include "daemon/handeye/movements_within_parts.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -60,24 +61,28 @@ Eigen::VectorXd mm_per_unit_of_paths(const std::vector<std::vector<Movement>>& o
 
 }  // namespace
 
-std::vector<Movement> movements_within_parts(std::span<const HandEyeObservation> observations,
-                                             ScaleMode scale) {
+MovementsOfParts movements_within_parts(std::span<const HandEyeObservation> observations,
+                                        ScaleMode scale) {
   std::vector<std::vector<Movement>> of_parts;
-  for (const Part& part : parts_of(observations)) {
-    if (!of_parts.empty() && part.members.size() < kFewestPosesOfPart) continue;
-    of_parts.push_back(select_movements(poses_of(observations, part), {.scale = scale}).movements);
+  std::size_t unit_part = 0;
+  const std::vector<Part> parts = parts_of(observations);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (p > 0 && parts[p].members.size() < kFewestPosesOfPart) continue;
+    auto movements = select_movements(poses_of(observations, parts[p]), {.scale = scale}).movements;
+    if (movements.empty()) continue;
+    if (of_parts.empty()) unit_part = p;
+    of_parts.push_back(std::move(movements));
   }
-  std::erase_if(of_parts, [](const auto& movements) { return movements.empty(); });
-  if (of_parts.size() < 2 || scale == ScaleMode::kKnown) return joined(of_parts);
+  if (of_parts.size() < 2 || scale == ScaleMode::kKnown) return {joined(of_parts), unit_part};
   const auto rotation = eye_from_hand_rotation(joined(of_parts));
-  if (!rotation) return joined(of_parts);
+  if (!rotation) return {joined(of_parts), unit_part};
   const Eigen::VectorXd mm =
       mm_per_unit(of_parts, *rotation).value_or(mm_per_unit_of_paths(of_parts));
   for (std::size_t p = 1; p < of_parts.size(); ++p) {
     const double to_first = mm[static_cast<Eigen::Index>(p)] / mm[0];
     for (Movement& movement : of_parts[p]) movement.eye_j_from_eye_i.translation() *= to_first;
   }
-  return joined(of_parts);
+  return {joined(of_parts), unit_part};
 }
 
 }  // namespace handeye

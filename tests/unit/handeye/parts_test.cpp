@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "daemon/handeye/movements_within_parts.hpp"
 #include "tests/unit/handeye/parted.hpp"
 
 /// A reconstruction in several parts: exact answers, and what counts.
@@ -126,6 +127,43 @@ TEST(Parts, OfTooFewPosesDoNotCount) {
 
   EXPECT_FALSE(maximum_likelihood(
       in_parts(recording.observations, scope(), {2, 2, 2, 2}, {1, 1, 1, 1}, 6).observations));
+}
+
+/// Together they hold more poses than the part that counts.
+TEST(Parts, OfTooFewPosesDoNotHideTheOneThatCounts) {
+  const auto recording = record(scope(), free_hand, 28, kExact, 1);
+  const auto parted =
+      in_parts(recording.observations, scope(), {12, 4, 4, 4, 4}, {0.2, 1, 7, 1, 7}, 1);
+  const auto found = maximum_likelihood(parted.observations);
+  ASSERT_TRUE(found);
+  EXPECT_LT(error_of(*found), 1e-6);
+  EXPECT_EQ(found->poses_used, 12u);
+}
+
+/// The largest part does not turn: its scale is to be had from its path alone.
+TEST(Parts, MayTurnInASmallerOneOnly) {
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    const auto shifted = in_parts(
+        record(scope(), synthetic::translation_only, 100, tracker_and_camera(), seed).observations,
+        scope(), {100}, {7.0}, seed);
+    auto turned =
+        in_parts(record(scope(), free_hand, 60, tracker_and_camera(), seed + 10).observations,
+                 scope(), {60}, {0.02}, seed + 10);
+    auto observations = shifted.observations;
+    for (auto& observation : turned.observations) {
+      observation.part = 1;
+      observations.push_back(observation);
+    }
+    const auto within = movements_within_parts(observations, ScaleMode::kUnknown);
+    EXPECT_EQ(within.unit_part, 1u);
+    EXPECT_FALSE(within.movements.empty());
+    const auto found = maximum_likelihood(observations);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->parts.size(), 2u);
+    EXPECT_NEAR(found->parts[0].scale_units_per_mm / 7.0, 1.0, 0.01);
+    EXPECT_NEAR(found->parts[1].scale_units_per_mm / 0.02, 1.0, 0.01);
+    EXPECT_LT(error_of(*found), 2.0);
+  }
 }
 
 TEST(Parts, ShareTheTimeOffset) {

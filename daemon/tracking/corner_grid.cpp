@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "daemon/tracking/patch.hpp"
 
@@ -32,17 +33,23 @@ bool touches_highlight(const PaddedPlane<std::int16_t>& grey, int x, int y) {
 }  // namespace
 
 CornerGrid::CornerGrid(cv::Size image_size, int cells, double min_distance_px)
-    : image_size_(image_size),
-      min_distance_px_(min_distance_px),
-      cell_px_(cell_side(image_size, cells, min_distance_px)),
-      columns_((image_size.width + cell_px_ - 1) / cell_px_),
-      rows_((image_size.height + cell_px_ - 1) / cell_px_),
-      first_of_cell_(static_cast<std::size_t>(columns_ * rows_), kNone) {
+    : image_size_(image_size), fewest_cells_(cells), min_distance_px_(min_distance_px) {
+  cut(std::numeric_limits<int>::max());
+  most_cells_ = cell_count();
+  entries_.reserve(2 * first_of_cell_.size());
+  cut(cells);
   const auto side = static_cast<std::size_t>(cell_px_ / 2 + 2 + 2 * kRadius);
   products_.resize(side * side);
   row_sums_.resize(side * side);
   strength_.resize(side * side);
-  entries_.reserve(2 * first_of_cell_.size());
+}
+
+void CornerGrid::cut(int cells) {
+  cell_px_ = cell_side(image_size_, std::max(cells, fewest_cells_), min_distance_px_);
+  columns_ = (image_size_.width + cell_px_ - 1) / cell_px_;
+  rows_ = (image_size_.height + cell_px_ - 1) / cell_px_;
+  first_of_cell_.assign(index_of(rows_, 0), kNone);
+  next_cell_ = 0;
 }
 
 void CornerGrid::detect(const ImagePyramid& pyramid, const std::vector<Eigen::Vector2f>& features,

@@ -23,8 +23,13 @@ struct Corner {
 /// tip of a corner.
 class CornerGrid {
  public:
-  /// `cells` is about how many cells the image is cut into.
+  /// `cells` is about how many cells the image is cut into; they are no smaller than
+  /// min_distance_px, nor than 8 px.
   CornerGrid(cv::Size image_size, int cells, double min_distance_px);
+
+  /// Cuts the image into smaller cells, or as few again as there were at first. The memory for the
+  /// smallest was taken then.
+  void cut(int cells);
 
   /// Corners in the empty cells of an image (a pyramid of two levels or more), in order of the
   /// cells. Their whole patch may be looked at and shows no highlight. `features`: what is tracked
@@ -34,6 +39,8 @@ class CornerGrid {
               int max_cells, std::vector<Corner>& corners);
 
   int cell_count() const { return columns_ * rows_; }
+  /// That the image can be cut into.
+  int most_cells() const { return most_cells_; }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -49,6 +56,8 @@ class CornerGrid {
   bool is_far_from_all(float x, float y, int cell) const;
 
   cv::Size image_size_;
+  int fewest_cells_;
+  int most_cells_;
   double min_distance_px_;
   int cell_px_;
   int columns_;

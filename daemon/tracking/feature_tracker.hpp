@@ -39,11 +39,11 @@ struct TrackedFrame {
 /// resolve no more than that, and the grain of camera and video coder, which stands still while the
 /// scene moves, holds features back.
 struct TrackerOptions {
-  int max_features{300};
-  int pyramid_levels{4};       ///< beyond the working image itself, at most 5
+  int max_features{300};       ///< at least 1
+  int pyramid_levels{4};       ///< beyond the working image itself, 1 to 5
   double min_distance_px{10};  ///< between features when new ones are sought, in the given image
   double quality{0.01};        ///< weakest corner accepted, of the strongest in the image
-  int threads{2};              ///< to track with; the results do not depend on it
+  int threads{2};              ///< to track with, at least 1; the results do not depend on it
 };
 
 /// Follows features from frame to frame. One thread; frames in order of time.
@@ -61,7 +61,8 @@ class FeatureTracker {
 };
 
 /// Inverse-compositional tracking with gain, offset and slope of the light per patch (Zinsser,
-/// Graessl, Niemann 2004), each feature against its first appearance.
+/// Graessl, Niemann 2004), each feature against its first appearance. Throws std::invalid_argument
+/// when an option is out of its range.
 std::unique_ptr<FeatureTracker> make_feature_tracker(const TrackerOptions& options = {});
 
 }  // namespace handeye

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <tuple>
+#include <stdexcept>
 
 #include <Eigen/LU>
 
-#include "daemon/tracking/corner_grid.hpp"
+#include "daemon/tracking/corner_supply.hpp"
 #include "daemon/tracking/feature_description.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 #include "daemon/tracking/image_pyramid.hpp"
@@ -18,16 +17,8 @@ namespace handeye {
 namespace {
 
 constexpr int kWidestPx = 1280;  ///< wider images are halved
-/// Cells looked at per frame for new features, as a fraction of all: empty cells without texture
-/// would otherwise cost a full detection in every frame.
-constexpr int kCellsFraction = 6;
-/// More cells than features wanted: in an endoscopy many are empty of texture or under a highlight.
-constexpr double kCellsPerFeature = 1.8;
-/// Usable areas that differ by less share a grid.
-constexpr double kSameShare = 0.2;
 constexpr float kLeastCorrelation = 0.8F;
 constexpr float kLargestSigmaPx = 0.3F;
-constexpr float kWeakestCorner = 0.2F;  ///< (grey levels / px)^2
 /// An appearance grown or shrunk by more is renewed.
 constexpr float kMostGrowth = 1.6F;
 /// One that has come to look different by more is renewed while it is still known for sure.
@@ -45,7 +36,8 @@ class IlluminationTracker final : public FeatureTracker {
   explicit IlluminationTracker(const TrackerOptions& options)
       : options_(options),
         loop_(options.threads),
-        tracks_(static_cast<std::size_t>(options.max_features)) {}
+        tracks_(static_cast<std::size_t>(options.max_features)),
+        supply_(options) {}
 
   void track(const cv::Mat& grey, const cv::Mat& mask, std::int64_t timestamp_ns,
              TrackedFrame& tracked) override {
@@ -58,9 +50,9 @@ class IlluminationTracker final : public FeatureTracker {
     settle(timestamp_ns);
     renew_appearances();
     top_up();
-    std::swap(now_, before_);
     report(timestamp_ns, tracked);
-    describer_.describe(grey, 1.0, tracked);
+    describer_.describe(halvings_ > 0 ? now_.shrunk() : grey, 1 << halvings_, tracked);
+    std::swap(now_, before_);
   }
 
  private:
@@ -68,12 +60,6 @@ class IlluminationTracker final : public FeatureTracker {
     halvings_ = 0;
     while ((grey.cols >> halvings_) > kWidestPx) ++halvings_;
     now_.build(grey, mask, halvings_, options_.pyramid_levels + 1);
-    const double share = std::max(now_.usable_share(), 0.02);
-    if (grid_ && std::abs(share - grid_share_) <= kSameShare * grid_share_) return;
-    grid_share_ = share;
-    grid_.emplace(now_.grey(0).size(),
-                  static_cast<int>(kCellsPerFeature * options_.max_features / share),
-                  options_.min_distance_px / (1 << halvings_));
   }
 
   /// Where each feature should be: constant velocity, or as the image as a whole moved.
@@ -189,28 +175,13 @@ class IlluminationTracker final : public FeatureTracker {
 
   void top_up() {
     tracks_.drop_lost();
-    if (tracks_.room() == 0) return;
-    const bool starving = 2 * tracks_.size() < static_cast<std::size_t>(options_.max_features);
-    const int cells = starving ? grid_->cell_count() : grid_->cell_count() / kCellsFraction;
-    grid_->detect(now_, tracks_.pixel, cells, corners_);
-    float strongest = 0;
-    for (const float strength : tracks_.strength) strongest = std::max(strongest, strength);
-    for (const Corner& corner : corners_) strongest = std::max(strongest, corner.strength);
-    const float weakest =
-        std::max(kWeakestCorner, static_cast<float>(options_.quality) * strongest);
-    std::erase_if(corners_, [&](const Corner& corner) { return corner.strength < weakest; });
-    if (corners_.size() > tracks_.room()) {
-      std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) {
-        return std::tuple(-a.strength, a.y, a.x) < std::tuple(-b.strength, b.y, b.x);
-      });
-      corners_.resize(tracks_.room());
-    }
-    for (const Corner& corner : corners_) {
+    const std::vector<Corner>& corners = supply_.find(now_, halvings_, tracks_);
+    for (const Corner& corner : corners) {
       tracks_.add(next_id_++, {static_cast<float>(corner.x), static_cast<float>(corner.y)},
                   corner.strength);
     }
-    const std::size_t first = tracks_.size() - corners_.size();
-    loop_.run(corners_.size(), [&](std::size_t i) { take_appearance(first + i); });
+    const std::size_t first = tracks_.size() - corners.size();
+    loop_.run(corners.size(), [&](std::size_t i) { take_appearance(first + i); });
     tracks_.drop_lost();
   }
 
@@ -230,9 +201,8 @@ class IlluminationTracker final : public FeatureTracker {
   TrackTable tracks_;
   ImagePyramid now_, before_;
   MotionModel model_;
+  CornerSupply supply_;
   FeatureDescriber describer_;
-  std::optional<CornerGrid> grid_;
-  double grid_share_{0};
   int halvings_{0};
   std::int64_t frames_{0};
   std::int64_t next_id_{0};
@@ -242,12 +212,19 @@ class IlluminationTracker final : public FeatureTracker {
   std::vector<Eigen::Vector2f> from_;    ///< where the feature was in the last image
   std::vector<Eigen::Vector2f> coarse_;  ///< where it should be, then where it roughly is
   std::vector<std::uint8_t> followed_;
-  std::vector<Corner> corners_;
 };
 
 }  // namespace
 
 std::unique_ptr<FeatureTracker> make_feature_tracker(const TrackerOptions& options) {
+  const bool sound = options.max_features >= 1 && options.pyramid_levels >= 1 &&
+                     options.pyramid_levels < ImagePyramid::kMaxLevels &&
+                     options.min_distance_px >= 0 && options.quality >= 0 && options.threads >= 1;
+  if (!sound) {
+    throw std::invalid_argument(
+        "tracker options: 1 feature or more, 1 to 5 pyramid levels, 1 thread or more, no negative "
+        "distance or quality");
+  }
   return std::make_unique<IlluminationTracker>(options);
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kMostOfRecent = 0.7;
 constexpr double kMostOfAll = 0.6;
+// A 60 Hz grabber on a source of 5 Hz repeats every picture eleven times.
+constexpr std::int64_t kStuckRepeats = 12;
 
 }  // namespace
 
@@ -16,10 +18,17 @@ void ImageHealth::add(ImageCondition condition) {
   ++counts_[static_cast<std::size_t>(condition)];
   last_[next_] = condition;
   next_ = (next_ + 1) % last_.size();
+  repeats_on_end_ = condition == ImageCondition::kFrozen ? repeats_on_end_ + 1 : 0;
+  if (repeats_on_end_ == kStuckRepeats) {
+    stuck_ += kStuckRepeats;
+  } else if (repeats_on_end_ > kStuckRepeats) {
+    ++stuck_;
+  }
 }
 
 ImageCondition ImageHealth::recent() const {
-  for (const ImageCondition ailment : {ImageCondition::kDark, ImageCondition::kFrozen,
+  if (repeats_on_end_ >= kStuckRepeats) return ImageCondition::kFrozen;
+  for (const ImageCondition ailment : {ImageCondition::kUnusable, ImageCondition::kDark,
                                        ImageCondition::kBright, ImageCondition::kBlurred}) {
     const auto ailing = std::ranges::count(last_, ailment);
     if (static_cast<double>(ailing) > kMostOfRecent * kRecent) return ailment;
@@ -27,14 +36,19 @@ ImageCondition ImageHealth::recent() const {
   return ImageCondition::kGood;
 }
 
+bool ImageHealth::recently_interlaced() const {
+  return std::ranges::count(last_, ImageCondition::kInterlaced) > 0;
+}
+
 ImageCondition ImageHealth::prevailing() const {
   const auto all = std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0});
+  const std::int64_t unusable = count(ImageCondition::kUnusable);
   const std::int64_t dark = count(ImageCondition::kDark);
-  const std::int64_t frozen = count(ImageCondition::kFrozen);
-  if (static_cast<double>(dark + frozen) <= kMostOfAll * static_cast<double>(all)) {
+  if (static_cast<double>(unusable + dark + stuck_) <= kMostOfAll * static_cast<double>(all)) {
     return ImageCondition::kGood;
   }
-  return dark >= frozen ? ImageCondition::kDark : ImageCondition::kFrozen;
+  if (unusable >= std::max(dark, stuck_)) return ImageCondition::kUnusable;
+  return dark >= stuck_ ? ImageCondition::kDark : ImageCondition::kFrozen;
 }
 
 }  // namespace handeye

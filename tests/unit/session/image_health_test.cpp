@@ -28,12 +28,23 @@ TEST(ImageHealth, SaysWhatAilsNow) {
 }
 
 TEST(ImageHealth, DoesNotMindAGrabberThatIsFasterThanTheCamera) {
-  ImageHealth health;
-  for (int k = 0; k < 100; ++k) {
-    health.add(k % 2 == 0 ? ImageCondition::kGood : ImageCondition::kFrozen);
+  for (const int shown_times : {2, 3, 4, 12}) {
+    ImageHealth health;
+    for (int k = 0; k < 240; ++k) {
+      health.add(k % shown_times == 0 ? ImageCondition::kGood : ImageCondition::kFrozen);
+      EXPECT_EQ(health.recent(), ImageCondition::kGood);
+    }
+    EXPECT_EQ(health.prevailing(), ImageCondition::kGood) << shown_times;
   }
-  EXPECT_EQ(health.recent(), ImageCondition::kGood);
-  EXPECT_EQ(health.prevailing(), ImageCondition::kGood);
+}
+
+TEST(ImageHealth, TellsAPictureThatSticksAgainAndAgain) {
+  ImageHealth health;
+  for (int k = 0; k < 200; ++k) {
+    health.add(k % 40 < 10 ? ImageCondition::kGood : ImageCondition::kFrozen);
+    EXPECT_EQ(health.recent() == ImageCondition::kFrozen, k % 40 >= 21) << k;
+  }
+  EXPECT_EQ(health.prevailing(), ImageCondition::kFrozen);
 }
 
 TEST(ImageHealth, BlamesWhatMostImagesWere) {
@@ -46,6 +57,9 @@ TEST(ImageHealth, BlamesWhatMostImagesWere) {
   EXPECT_EQ(health.prevailing(), ImageCondition::kFrozen);
   add(health, ImageCondition::kDark, 60);
   EXPECT_EQ(health.prevailing(), ImageCondition::kDark);
+  add(health, ImageCondition::kUnusable, 70);
+  EXPECT_EQ(health.prevailing(), ImageCondition::kUnusable);
+  EXPECT_EQ(health.recent(), ImageCondition::kUnusable);
 }
 
 TEST(Guidance, SaysWhatAilsThePictureBeforeWhatIsInIt) {
@@ -59,6 +73,7 @@ TEST(Guidance, SaysWhatAilsThePictureBeforeWhatIsInIt) {
   EXPECT_NE(said(ImageCondition::kDark).find("too dark"), std::string::npos);
   EXPECT_NE(said(ImageCondition::kFrozen).find("frozen"), std::string::npos);
   EXPECT_NE(said(ImageCondition::kBright).find("too bright"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kUnusable).find("cannot be used"), std::string::npos);
   EXPECT_NE(said(ImageCondition::kBlurred).find("slower"), std::string::npos);
   EXPECT_NE(said(ImageCondition::kGood).find("tilt"), std::string::npos);
   situation.hand_hidden = true;

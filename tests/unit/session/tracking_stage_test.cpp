@@ -142,8 +142,10 @@ struct Calibrated {
   Pose truth{Pose::Identity()};
 };
 
-Calibrated calibrate(double duration_s, const Trouble& trouble) {
-  Sequence sequence("plain", lasting(duration_s));
+/// `times_shown`: by a grabber so many times as fast as its camera.
+Calibrated calibrate(double duration_s, const Trouble& trouble, int times_shown = 1) {
+  const SequenceOptions sequence_options = lasting(duration_s);
+  Sequence sequence("plain", sequence_options);
   const simulator::World& world = sequence.world();
   CalibrationOptions options;
   options.camera = sequence.camera();
@@ -173,8 +175,12 @@ Calibrated calibrate(double duration_s, const Trouble& trouble) {
     frame.timestamp_ns = rendered.timestamp_ns;
     rendered.grey.copyTo(frame.grey);
     trouble(1e-9 * static_cast<double>(rendered.timestamp_ns - world.start_ns), frame.grey);
-    stage.process(frame, tracked);
-    calibration.add_frame(tracked);
+    for (int shown = 0; shown < times_shown; ++shown) {
+      stage.process(frame, tracked);
+      calibration.add_frame(tracked);
+      frame.timestamp_ns += static_cast<std::int64_t>(
+          1e9 / (sequence_options.camera_rate_hz * static_cast<double>(times_shown)));
+    }
   }
   return {calibration.solve(), world.hand_from_eye};
 }
@@ -212,6 +218,24 @@ TEST(ImageTrouble, AFrozenSecondLeavesARightResult) {
   expect_right_or_refused(calibrated, Reason::kImageFrozen);
   EXPECT_NEAR(static_cast<double>(calibrated.result.frames.frozen), 25, 1);
   EXPECT_LE(calibrated.result.frames.used, 176);
+}
+
+TEST(ImageTrouble, AGrabberThreeTimesAsFastAsItsCameraDoesNoHarm) {
+  const Calibrated calibrated = calibrate(
+      8, [](double, cv::Mat&) {}, 3);
+  const CalibrationResult& result = calibrated.result;
+  EXPECT_EQ(result.verdict, Verdict::kAccepted) << reason_word(result.reason);
+  expect_right_or_refused(calibrated, Reason::kNone);
+  EXPECT_EQ(result.frames.received, 600);
+  EXPECT_EQ(result.frames.frozen, 400);
+  EXPECT_GT(result.frames.used, 180);
+}
+
+TEST(ImageTrouble, AFastGrabberIsNotBlamedForAScopeThatHardlyMoved) {
+  const Calibrated calibrated = calibrate(
+      0.6, [](double, cv::Mat&) {}, 3);
+  EXPECT_EQ(calibrated.result.verdict, Verdict::kRefused);
+  EXPECT_NE(calibrated.result.reason, Reason::kImageFrozen);
 }
 
 TEST(ImageTrouble, BlackOrFrozenAllAlongIsRefusedWithItsReason) {

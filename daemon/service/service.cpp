@@ -27,7 +27,8 @@ double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
 
 VisionThread::Options vision_options(const Config& config, const CameraFiles& files,
                                      const Channels& channels) {
-  VisionThread::Options options{.mask = files.mask, .frame_channel = {}};
+  VisionThread::Options options;
+  options.mask = files.mask;
   // A camera on LCM is on FRAME already; never publish there beside it.
   if (config.camera.driver != Config::Camera::Driver::kLcm) options.frame_channel = channels.frame;
   return options;

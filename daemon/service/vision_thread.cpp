@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/vision_thread.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <opencv2/imgcodecs.hpp>
 #include <spdlog/spdlog.h>
 
@@ -9,8 +12,6 @@
 namespace handeye {
 namespace {
 
-// Feature lists are small; the solver may be busy with an adjustment for some seconds.
-constexpr std::size_t kTrackedInFlight = 256;
 constexpr std::chrono::milliseconds kWait{100};
 // Below 100 kB for any endoscope image up to 1280x720; see image_t.lcm.
 constexpr int kJpegQuality = 80;
@@ -21,7 +22,7 @@ VisionThread::VisionThread(Exchange<Frame>& frames, Bus& bus, Options options)
     : frames_(frames),
       options_(std::move(options)),
       jpeg_options_{cv::IMWRITE_JPEG_QUALITY, kJpegQuality},
-      tracked_(kTrackedInFlight) {
+      tracked_(options_.tracked_in_flight) {
   if (options_.frame_channel) publisher_.emplace(bus, *options_.frame_channel);
 }
 
@@ -47,34 +48,39 @@ void VisionThread::run(const std::stop_token& stop) {
     // First, for a search may take long, and a recording should have every frame.
     if (publisher_ && monotonic_ns() < record_until_ns_) publish(*frame);
     const std::uint64_t calibration = collecting_;
-    watch(calibration != 0 ? track(*frame, calibration) : inspector_.inspect(frame->grey));
+    const bool tracking = calibration != 0;
+    health_.add(tracking ? track(*frame, calibration) : inspector_.inspect(frame->grey));
+    if (tracking) interlaced_ = health_.recently_interlaced();
+    watch();
     frames_.release(frame);
   }
 }
 
 /// Says it when something begins or ceases to ail the picture; blur comes and goes with the hand.
-void VisionThread::watch(ImageCondition condition) {
-  health_.add(condition);
+void VisionThread::watch() {
   ImageCondition now = health_.recent();
-  if (now == ImageCondition::kGood && health_.count(ImageCondition::kInterlaced) > 0) {
-    now = ImageCondition::kInterlaced;
-  }
+  if (now == ImageCondition::kGood && interlaced_) now = ImageCondition::kInterlaced;
   const ImageCondition before = picture_.exchange(now);
   if (now == before || now == ImageCondition::kBlurred || before == ImageCondition::kBlurred)
     return;
   if (now == ImageCondition::kGood) {
+    if (before == ImageCondition::kInterlaced) return;
     spdlog::info("camera: the picture is good again");
   } else {
     spdlog::warn("camera: {}", picture_text(now));
   }
 }
 
+void VisionThread::begin_stage(std::uint64_t calibration) {
+  const std::scoped_lock lock(board_mutex_);
+  stage_ = make_image_stage(board_, options_.mask.clone());
+  staged_calibration_ = calibration;
+  health_ = {};
+  missed_descriptions_.clear();
+}
+
 ImageCondition VisionThread::track(const Frame& frame, std::uint64_t calibration) {
-  if (calibration != staged_calibration_) {
-    const std::scoped_lock lock(board_mutex_);
-    stage_ = make_image_stage(board_, options_.mask.clone());
-    staged_calibration_ = calibration;
-  }
+  if (calibration != staged_calibration_) begin_stage(calibration);
   TrackedItem* item = tracked_.acquire();
   // The tracker must see every frame, also one that the solver has no room for.
   TrackedFrame& target = item != nullptr ? item->frame : overflow_;
@@ -84,12 +90,27 @@ ImageCondition VisionThread::track(const Frame& frame, std::uint64_t calibration
   const ImageCondition condition = target.condition;
   if (item == nullptr) {
     tracked_.count_drop();
+    missed_descriptions_.insert(missed_descriptions_.end(), overflow_.descriptions.begin(),
+                                overflow_.descriptions.end());
     return condition;
   }
+  catch_up_on_descriptions(item->frame);
   item->calibration = calibration;
   item->tracking_ms = stage_->time_ms();
   tracked_.commit(item);
   return condition;
+}
+
+/// A feature is described once in its life: what the solver missed it gets late, of those that are
+/// still alive.
+void VisionThread::catch_up_on_descriptions(TrackedFrame& tracked) {
+  if (missed_descriptions_.empty() || shows_nothing(tracked.condition)) return;
+  std::ranges::copy_if(missed_descriptions_, std::back_inserter(tracked.descriptions),
+                       [&](const FeatureDescription& missed) {
+                         return std::ranges::binary_search(tracked.observations, missed.feature_id,
+                                                           {}, &Observation::feature_id);
+                       });
+  missed_descriptions_.clear();
 }
 
 void VisionThread::process(const Frame& frame, TrackedFrame& tracked) {
@@ -97,11 +118,12 @@ void VisionThread::process(const Frame& frame, TrackedFrame& tracked) {
   stage_->process(frame, tracked);
   // Once a calibration: what ails one image ails the next.
   if (failures == 0 && stage_->failures() > 0) {
-    spdlog::warn("an image could not be searched for the board: {}", stage_->failure());
+    spdlog::warn("camera: an image could not be used: {}", stage_->failure());
   }
 }
 
 void VisionThread::publish(const Frame& frame) {
+  if (frame.grey.empty()) return;
   if (!cv::imencode(".jpg", frame.grey, message_.data, jpeg_options_)) return;
   message_.timestamp_ns = frame.timestamp_ns;
   message_.frame_number = frame.sequence;

@@ -37,6 +37,9 @@ class VisionThread {
     cv::Mat mask;  ///< empty: found in the images
     std::optional<std::string>
         frame_channel;  ///< where to publish frames while recording; none: never
+    /// Waiting for the solver, which may be busy for many seconds: 17 s of a 60 Hz camera. Feature
+    /// lists are small.
+    std::size_t tracked_in_flight{1024};
   };
 
   VisionThread(Exchange<Frame>& frames, Bus& bus, Options options);
@@ -58,8 +61,10 @@ class VisionThread {
 
  private:
   void run(const std::stop_token& stop);
+  void begin_stage(std::uint64_t calibration);
   ImageCondition track(const Frame& frame, std::uint64_t calibration);
-  void watch(ImageCondition condition);
+  void catch_up_on_descriptions(TrackedFrame& tracked);
+  void watch();
   void process(const Frame& frame, TrackedFrame& tracked);
   void publish(const Frame& frame);
 
@@ -72,8 +77,10 @@ class VisionThread {
   std::unique_ptr<ImageStage> stage_;
   std::uint64_t staged_calibration_{0};
   TrackedFrame overflow_;
-  ImageInspector inspector_;  ///< while nothing is being tracked
+  std::vector<FeatureDescription> missed_descriptions_;  ///< of frames that went to overflow_
+  ImageInspector inspector_;                             ///< while nothing is being tracked
   ImageHealth health_;
+  bool interlaced_{false};  ///< as last seen: only while tracking can it be told
 
   std::uint64_t last_calibration_{0};
   std::mutex board_mutex_;  ///< taken once per calibration

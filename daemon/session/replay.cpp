@@ -22,13 +22,12 @@ namespace {
 // Only how often the progress is told.
 constexpr std::int64_t kProgressEvery = 10;
 
-/// All that the images themselves say: their size.
-CameraModel camera_of_unknown_lens(const std::filesystem::path& path) {
-  const Recording recording = open_recording(path);
+/// All that the images themselves say: their size. Leaves the recording's camera at its second one.
+CameraModel camera_of_unknown_lens(const Recording& recording, const ReplayOptions& options) {
   if (const auto problem = recording.camera->open()) throw InputError(*problem);
   Frame first;
   if (recording.camera->grab(first, std::chrono::milliseconds(0)) != GrabStatus::kFrame) {
-    throw InputError(fmt::format("{}: has no images", path.string()));
+    throw InputError(fmt::format("{}: has no images", options.recording.string()));
   }
   CameraModel camera;
   camera.width = first.grey.cols;
@@ -36,11 +35,16 @@ CameraModel camera_of_unknown_lens(const std::filesystem::path& path) {
   return camera;
 }
 
+/// False: only the size of its images is known.
+bool knows_lens(const CameraModel& camera) {
+  return camera.fx > 0;
+}
+
 CameraModel camera_for(const Recording& recording, const ReplayOptions& options) {
   if (options.camera_file) return read_camera_model(*options.camera_file);
   if (recording.camera_model) return *recording.camera_model;
   if (options.intrinsics == IntrinsicsMode::kEstimate && !options.board) {
-    return camera_of_unknown_lens(options.recording);
+    return camera_of_unknown_lens(recording, options);
   }
   throw InputError(fmt::format(
       "{}: has no camera.json; name the camera's with --camera FILE, or "
@@ -52,15 +56,21 @@ cv::Mat mask_for(const Recording& recording, const ReplayOptions& options,
                  const CameraModel& camera) {
   cv::Mat mask = options.mask_file ? read_mask(*options.mask_file) : recording.mask;
   if (!mask.empty() && (mask.cols != camera.width || mask.rows != camera.height)) {
-    throw InputError(fmt::format("{}: the mask is {}x{}, the camera file is for {}x{}",
-                                 options.mask_file.value_or(options.recording).string(), mask.cols,
-                                 mask.rows, camera.width, camera.height));
+    throw InputError(fmt::format(
+        "{}: the mask is {}x{}, the {} {}x{}",
+        options.mask_file.value_or(options.recording).string(), mask.cols, mask.rows,
+        knows_lens(camera) ? "camera file is for" : "images are", camera.width, camera.height));
   }
   return mask;
 }
 
 void require_size(const Frame& frame, const CameraModel& camera, const ReplayOptions& options) {
   if (frame.grey.cols == camera.width && frame.grey.rows == camera.height) return;
+  if (!knows_lens(camera)) {
+    throw InputError(fmt::format(
+        "{}: its images begin as {}x{} and go on as {}x{}; record them at one size",
+        options.recording.string(), camera.width, camera.height, frame.grey.cols, frame.grey.rows));
+  }
   throw InputError(fmt::format(
       "{}: its images are {}x{}, but the camera file is for {}x{}; give the right one with "
       "--camera",

@@ -20,7 +20,9 @@ std::string time_offset_text(const CalibrationResult& result) {
 /// What is found of a lens with the calibration, and how sure that is.
 std::string lens_text(const CalibrationResult& result) {
   if (!result.lens) return "";
-  if (!result.lens->observable) return row("lens", "the images do not tell it");
+  if (!result.lens->observable) {
+    return row("lens", "not found: the images do not tell it, or the hand's turns contradict it");
+  }
   const CameraModel& camera = result.camera;
   const LensSigma& sigma = result.lens->sigma;
   return row("lens", fmt::format("focal length {:.2f} +- {:.2f} px, centre +- {:.2f} px, k1 {:.4f} "

@@ -2,6 +2,7 @@
 #include "daemon/session/lens_sensitivity.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace handeye {
@@ -12,6 +13,7 @@ constexpr double kMinTurnRad = rad_from_deg(5.0);
 constexpr std::size_t kFewestTurns = 20;
 /// Pairs grow with the square of the poses; so many are plenty.
 constexpr std::size_t kMaxPoses = 80;
+constexpr double kMaxRotationExcess = 0.03;
 
 /// The frames of `frames` that `wanted` has as well; both in order of time.
 std::vector<RegisteredFrame> counterparts(std::span<const RegisteredFrame> frames,
@@ -86,6 +88,11 @@ std::optional<double> rotation_ratio(std::span<const HandEyeObservation> observa
   }
   if (turns < kFewestTurns) return std::nullopt;
   return products / squares;
+}
+
+bool hand_contradicts_lens(std::span<const HandEyeObservation> observations) {
+  const auto ratio = rotation_ratio(observations);
+  return ratio && std::abs(*ratio - 1.0) > kMaxRotationExcess;
 }
 
 }  // namespace handeye

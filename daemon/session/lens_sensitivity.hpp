@@ -22,4 +22,8 @@ std::optional<Matrix6d> lens_covariance(const Reconstruction& reconstruction,
 /// the lens is wrong. Nothing where the hand hardly turns.
 std::optional<double> rotation_ratio(std::span<const HandEyeObservation> observations);
 
+/// Whether that ratio is so far from 1 that the lens must be wrong: as a focal length is off, so is
+/// the ratio, about.
+bool hand_contradicts_lens(std::span<const HandEyeObservation> observations);
+
 }  // namespace handeye

@@ -71,7 +71,9 @@ struct MethodResult {
 /// What a lens that was found with the calibration is worth.
 struct LensQuality {
   LensSigma sigma;
-  bool observable{false};  ///< false: the images do not tell the lens, and the camera is a guess
+  /// False: the images do not tell the lens, or the hand turned otherwise than the eye under it;
+  /// the camera is a guess, whatever sigma says.
+  bool observable{false};
 };
 
 /// Everything a calibration says; the fields of the result JSON and of result_t.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/verdict.hpp"
 
-#include <cmath>
-
 #include "daemon/session/lens_sensitivity.hpp"
 
 namespace handeye {
@@ -15,8 +13,6 @@ constexpr std::size_t kFewestBoardPoses = 4;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault; of
 // frames with a visible board, it is for want of the board.
 constexpr double kSeenEnough = 0.5;
-// A focal length that is off turns the eye more, or less, than the hand by about as much.
-constexpr double kMaxRotationExcess = 0.03;
 
 bool with_board(const Evidence& evidence) {
   return evidence.estimate.scale == ScaleMode::kKnown;
@@ -57,9 +53,8 @@ bool looked_past_board(const Evidence& evidence) {
 bool lens_is_known(const Evidence& evidence) {
   const Lens& lens = evidence.reconstruction.lens;
   if (lens.mode == IntrinsicsMode::kFixed) return true;
-  if (!lens.observable || !evidence.lens_covariance) return false;
-  const auto ratio = rotation_ratio(evidence.estimate.observations);
-  return !ratio || std::abs(*ratio - 1.0) <= kMaxRotationExcess;
+  return lens.observable && evidence.lens_covariance &&
+         !hand_contradicts_lens(evidence.estimate.observations);
 }
 
 bool is_wanted(const Matrix6d& covariance, const WantedSigma& wanted) {
@@ -142,7 +137,8 @@ Finding conclude(const Evidence& evidence) {
   if (problem == MotionProblem::kNone && !is_wanted(covariance, evidence.wanted)) {
     problem = MotionProblem::kUncertain;
   }
-  return {or_the_images(reason_after(problem, evidence), evidence), judgement, covariance};
+  return {or_the_images(reason_after(problem, evidence), evidence), judgement, covariance,
+          lens_is_known(evidence)};
 }
 
 }  // namespace handeye

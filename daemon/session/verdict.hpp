@@ -31,6 +31,7 @@ struct Finding {
   Reason reason{Reason::kNone};           ///< kNone: accept
   std::optional<Judgement> judgement;     ///< nothing: there was no answer to judge
   Matrix6d covariance{Matrix6d::Zero()};  ///< of the answer judged, the lens's part included
+  bool lens_known{true};                  ///< false: what is said of the lens must not be believed
 };
 
 /// What is wrong with a motion, in the result's words; kNone for kNone.

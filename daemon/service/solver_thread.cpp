@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/solver_thread.hpp"
 
+#include <algorithm>
+
 #include <spdlog/spdlog.h>
 
 #include "daemon/session/stopwatch.hpp"
@@ -12,14 +14,25 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kWait{50};
 constexpr double kAssessEvery_ms = 1000;
+/// Meanwhile nobody takes the frames in, or hears a request: not more than a third of the time.
 constexpr double kBetweenAttempts_ms = 3000;
+constexpr double kBetweenAttempts_solves = 2;
 // The estimate on the way lacks the global adjustment; ask for some margin before trying that.
 constexpr double kAttemptMargin = 0.9;
 
-bool within(const CalibrationProgress& progress, const WantedSigma& wanted) {
-  return progress.sigma_rotation_deg && progress.sigma_translation_mm &&
-         *progress.sigma_rotation_deg <= kAttemptMargin * wanted.rotation_deg &&
-         *progress.sigma_translation_mm <= kAttemptMargin * wanted.translation_mm;
+/// What a lens that is being found adds only an attempt can tell.
+bool is_promising(const CalibrationProgress& progress, const WantedSigma& wanted) {
+  const auto& sigma = progress.sigma_beside_lens;
+  return sigma && sigma->rotation_deg <= kAttemptMargin * wanted.rotation_deg &&
+         sigma->translation_mm <= kAttemptMargin * wanted.translation_mm;
+}
+
+CalibrationResult cancelled(std::int64_t request_id) {
+  CalibrationResult result;
+  result.request_id = request_id;
+  result.verdict = Verdict::kCancelled;
+  result.reason = Reason::kCancelled;
+  return result;
 }
 
 }  // namespace
@@ -33,6 +46,8 @@ struct SolverThread::Running {
   double next_attempt_ms;
   double tracking_ms{0};
   std::uint64_t drops_before;
+  bool finish_asked{false};
+  bool cancel_asked{false};
 
   double max_duration_ms() const { return 1000 * calibration.options().start.max_duration_s; }
 };
@@ -76,16 +91,10 @@ void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) 
                   .drops_before = tracked_.dropped()};
   while (!stop.stop_requested()) {
     take_in(running, kWait);
-    const auto command = commands_.pop();
-    if (command && command->kind == Command::Kind::kCancel) {
-      CalibrationResult cancelled;
-      cancelled.request_id = begin.start.request_id;
-      cancelled.verdict = Verdict::kCancelled;
-      cancelled.reason = Reason::kCancelled;
-      return post(std::move(cancelled));
-    }
-    if (command && command->kind == Command::Kind::kFinish) return conclude(running);
-    if (running.since_start.elapsed_ms() > running.max_duration_ms()) return conclude(running);
+    hear(running);
+    if (running.cancel_asked) return post(cancelled(begin.start.request_id));
+    const bool time_is_up = running.since_start.elapsed_ms() > running.max_duration_ms();
+    if (running.finish_asked || time_is_up) return conclude(running, stop);
     if (running.since_start.elapsed_ms() > running.next_assessment_ms && assess(running)) return;
   }
 }
@@ -101,9 +110,21 @@ void SolverThread::take_in(Running& running, milliseconds wait) {
   tracked_.release(item);
 }
 
-void SolverThread::take_rest(Running& running) {
-  // What was tracked before now, not what keeps coming.
-  for (int waiting = tracked_.waiting(); waiting > 0; --waiting) take_in(running, milliseconds(0));
+/// What was tracked before now, not what keeps coming.
+void SolverThread::take_rest(Running& running, const std::stop_token& stop) {
+  for (int waiting = tracked_.waiting(); waiting > 0 && !stop.stop_requested(); --waiting) {
+    take_in(running, milliseconds(0));
+    hear(running);
+    if (running.cancel_asked) return;
+  }
+}
+
+/// What was asked for since the last time.
+void SolverThread::hear(Running& running) {
+  while (const auto command = commands_.pop()) {
+    running.finish_asked |= command->kind == Command::Kind::kFinish;
+    running.cancel_asked |= command->kind == Command::Kind::kCancel;
+  }
 }
 
 /// Tells how far we are; true when that was far enough and the result has been posted.
@@ -112,20 +133,29 @@ bool SolverThread::assess(Running& running) {
   set_progress(progress);
   running.next_assessment_ms = running.since_start.elapsed_ms() + kAssessEvery_ms;
   if (running.since_start.elapsed_ms() < running.next_attempt_ms ||
-      !within(progress, running.calibration.options().start.wanted)) {
+      !is_promising(progress, running.calibration.options().start.wanted)) {
     return false;
   }
+  const Stopwatch attempt;
   CalibrationResult result = solve(running);
-  running.next_attempt_ms = running.since_start.elapsed_ms() + kBetweenAttempts_ms;
-  if (result.verdict != Verdict::kAccepted) return false;
+  running.next_attempt_ms =
+      running.since_start.elapsed_ms() +
+      std::max(kBetweenAttempts_ms, kBetweenAttempts_solves * attempt.elapsed_ms());
+  hear(running);
+  if (running.cancel_asked || result.verdict != Verdict::kAccepted) return false;
   post(std::move(result));
   return true;
 }
 
-void SolverThread::conclude(Running& running) {
+void SolverThread::conclude(Running& running, const std::stop_token& stop) {
   post(Solving{});
-  take_rest(running);
-  post(solve(running));
+  take_rest(running, stop);
+  if (stop.stop_requested()) return;
+  std::optional<CalibrationResult> result;
+  if (!running.cancel_asked) result = solve(running);
+  hear(running);
+  const std::int64_t request_id = running.calibration.options().start.request_id;
+  post(running.cancel_asked ? cancelled(request_id) : std::move(*result));
 }
 
 CalibrationResult SolverThread::solve(Running& running) {

@@ -57,9 +57,10 @@ class SolverThread {
   void run(const std::stop_token& stop);
   void calibrate(const Command& begin, const std::stop_token& stop);
   void take_in(Running& running, std::chrono::milliseconds wait);
-  void take_rest(Running& running);
+  void take_rest(Running& running, const std::stop_token& stop);
+  void hear(Running& running);
   bool assess(Running& running);
-  void conclude(Running& running);
+  void conclude(Running& running, const std::stop_token& stop);
   CalibrationResult solve(Running& running);
   void post(Event event);
   void set_progress(CalibrationProgress progress);

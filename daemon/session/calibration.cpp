@@ -78,7 +78,9 @@ Calibration::Calibration(const CalibrationOptions& options)
     : options_(options),
       eye_(make_eye_source(options.start.board, options.camera, options.intrinsics,
                            options.reconstruction)),
-      hand_({.capacity = options.hand_capacity}) {}
+      hand_({.capacity = options.hand_capacity}) {
+  if (is_lens_given()) lens_covariance_ = Matrix6d::Zero();
+}
 
 void Calibration::add_hand(const HandSample& sample) {
   hand_.push(sample);
@@ -114,11 +116,19 @@ CalibrationProgress Calibration::progress() const {
                                     .translation_coverage_mm = progress.translation_coverage_mm});
   const std::vector<RegisteredFrame> frames = thinned(eye_->current().frames, kFramesOnTheWay);
   const Estimate estimate_so_far = estimate(frames, hand_, options_.noise, eye_->scale());
-  if (estimate_so_far.likelihood) {
-    progress.sigma_rotation_deg = estimate_so_far.likelihood->sigma_rotation_deg();
-    progress.sigma_translation_mm = estimate_so_far.likelihood->sigma_translation_mm();
-  }
+  tell_sigma(estimate_so_far, progress);
   return progress;
+}
+
+void Calibration::tell_sigma(const Estimate& so_far, CalibrationProgress& progress) const {
+  if (!so_far.likelihood) return;
+  if (!is_lens_given() && hand_contradicts_lens(so_far.observations)) return;
+  const Matrix6d& covariance = so_far.likelihood->covariance;
+  progress.sigma_beside_lens =
+      MethodSigma{sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
+  if (!lens_covariance_) return;
+  progress.sigma_rotation_deg = sigma_rotation_deg(covariance + *lens_covariance_);
+  progress.sigma_translation_mm = sigma_translation_mm(covariance + *lens_covariance_);
 }
 
 CalibrationResult Calibration::solve() {
@@ -127,16 +137,20 @@ CalibrationResult Calibration::solve() {
   const Stopwatch stopwatch;
   const Estimate found = estimate(reconstruction.frames, hand_, options_.noise, eye_->scale());
   write_estimate(found, options_.noise, result);
-  const Finding finding =
-      conclude({.frames_received = frames_,
-                .images = images_,
-                .hand_path = hand_path_.room_from_hand(),
-                .reconstruction = reconstruction,
-                .estimate = found,
-                .lens_covariance = lens_covariance(reconstruction, found, hand_),
-                .noise = options_.noise,
-                .wanted = options_.start.wanted});
+  lens_covariance_ = lens_covariance(reconstruction, found, hand_);
+  const Finding finding = conclude({.frames_received = frames_,
+                                    .images = images_,
+                                    .hand_path = hand_path_.room_from_hand(),
+                                    .reconstruction = reconstruction,
+                                    .estimate = found,
+                                    .lens_covariance = lens_covariance_,
+                                    .noise = options_.noise,
+                                    .wanted = options_.start.wanted});
   if (found.likelihood && finding.judgement) write_covariance(finding.covariance, result);
+  if (!finding.lens_known) {
+    lens_covariance_.reset();
+    if (result.lens) result.lens->observable = false;
+  }
   result.reason = finding.reason;
   result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
   result.advice = advice_for(result.reason, found);

@@ -33,8 +33,13 @@ struct CalibrationProgress {
   int keyframes{0};
   double rotation_coverage_deg{0};    ///< largest rotation of the hand since the first sample
   double translation_coverage_mm{0};  ///< largest translation of the hand since then
-  std::optional<double> sigma_rotation_deg;  ///< so far; nothing: not known yet
+  /// So far; nothing: not known yet. What an uncertain lens adds only solve() finds: until it has
+  /// found a lens that was not given there is none, then it is added as it was there.
+  std::optional<double> sigma_rotation_deg;
   std::optional<double> sigma_translation_mm;
+  /// The same without the lens's part: solve() is worth trying when this is small enough. Nothing
+  /// also where the hand contradicts the lens.
+  std::optional<MethodSigma> sigma_beside_lens;
   std::string guidance;  ///< the one thing to do next, for the person with the scope
 };
 
@@ -48,17 +53,22 @@ class Calibration {
   /// Samples of the hand, in order of time.
   void add_hand(const HandSample& sample);
   /// What an ImageStage of the same board, or of none, saw; in order of time. Milliseconds, now and
-  /// then some ten.
+  /// then some ten; seconds when a lens is looked for (kEstimate: once, or a few times in vain).
   void add_frame(const TrackedFrame& frame);
 
   /// An estimate from what is there, without the global adjustment: some ten milliseconds.
   CalibrationProgress progress() const;
-  /// The result from what is there. More may be added after it, and solve() called again.
+  /// The result from what is there: up to seconds, and several times that where the lens is found
+  /// with it. More may be added after it, and solve() called again.
   CalibrationResult solve();
 
   const CalibrationOptions& options() const { return options_; }
 
  private:
+  bool is_lens_given() const {
+    return options_.start.board || options_.intrinsics == IntrinsicsMode::kFixed;
+  }
+  void tell_sigma(const Estimate& so_far, CalibrationProgress& progress) const;
   CalibrationResult begin_result() const;
   std::string advice_for(Reason reason, const Estimate& found) const;
   Reconstruction reconstruct(CalibrationResult& result);
@@ -74,6 +84,7 @@ class Calibration {
   std::int64_t features_{0};  ///< summed over the frames
   int features_recent_{0};    ///< in the last frame
   double reconstruction_ms_{0};
+  std::optional<Matrix6d> lens_covariance_;  ///< of the last solve(); zero where the lens is given
 };
 
 }  // namespace handeye

@@ -155,6 +155,49 @@ TEST(Calibration, ProgressTellsSigmaAndGuidesTheHand) {
   EXPECT_EQ(progress.guidance, "");
 }
 
+TEST(Calibration, ClaimsNoSigmaThatLeavesTheLensOut) {
+  Scene scene;
+  CalibrationOptions with_lens = options();
+  with_lens.intrinsics = IntrinsicsMode::kRefine;
+  Calibration calibration(with_lens);
+  for (int k = 0; k < 8 * kTrackerRate_hz; ++k) calibration.add_hand(scene.hand(k));
+  for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
+  const CalibrationProgress before = calibration.progress();
+  EXPECT_FALSE(before.sigma_rotation_deg);
+  EXPECT_FALSE(before.sigma_translation_mm);
+  ASSERT_TRUE(before.sigma_beside_lens);
+  const CalibrationResult result = calibration.solve();
+  ASSERT_TRUE(result.lens && result.lens->observable);
+  const CalibrationProgress after = calibration.progress();
+  ASSERT_TRUE(after.sigma_rotation_deg && after.sigma_beside_lens);
+  EXPECT_GT(*after.sigma_rotation_deg, after.sigma_beside_lens->rotation_deg);
+  EXPECT_GT(*after.sigma_translation_mm, after.sigma_beside_lens->translation_mm);
+}
+
+// Under a lens of a wrong focal length the eye seems to turn otherwise than the hand.
+TEST(Calibration, BelievesNoLensThatTheHandContradicts) {
+  Scene scene;
+  CalibrationOptions with_lens = options();
+  with_lens.intrinsics = IntrinsicsMode::kRefine;
+  Calibration calibration(with_lens);
+  Eigen::Matrix3d first;
+  for (int k = 0; k < 8 * kTrackerRate_hz; ++k) {
+    HandSample sample = scene.hand(k);
+    // Told to have turned a tenth more than it did.
+    if (k == 0) first = sample.room_from_hand.linear();
+    const Eigen::Vector3d turned = log_so3(sample.room_from_hand.linear() * first.transpose());
+    sample.room_from_hand.linear() = exp_so3(1.1 * turned) * first;
+    calibration.add_hand(sample);
+  }
+  for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
+  EXPECT_FALSE(calibration.progress().sigma_beside_lens);
+  const CalibrationResult result = calibration.solve();
+  EXPECT_EQ(result.verdict, Verdict::kRefused);
+  EXPECT_EQ(result.reason, Reason::kLensUnobservable) << reason_word(result.reason);
+  ASSERT_TRUE(result.lens);
+  EXPECT_FALSE(result.lens->observable);
+}
+
 TEST(Guidance, NamesTheFirstThingThatIsMissing) {
   Situation situation;
   EXPECT_EQ(guidance_for(situation), "no image from the camera yet");

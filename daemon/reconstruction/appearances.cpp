@@ -2,8 +2,6 @@
 #include "daemon/reconstruction/appearances.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 namespace handeye {
 namespace {
@@ -31,16 +29,6 @@ const AppearanceBits* Appearances::find(std::int64_t feature_id) const {
   const auto found = std::lower_bound(living_.begin(), living_.end(),
                                       FeatureDescription{feature_id, {}}, by_feature);
   return found != living_.end() && found->feature_id == feature_id ? &found->bits : nullptr;
-}
-
-int appearance_distance(const AppearanceBits& a, const AppearanceBits& b) {
-  std::array<std::uint64_t, 4> left{};
-  std::array<std::uint64_t, 4> right{};
-  std::memcpy(left.data(), a.data(), a.size());
-  std::memcpy(right.data(), b.data(), b.size());
-  int distance = 0;
-  for (std::size_t i = 0; i < left.size(); ++i) distance += std::popcount(left[i] ^ right[i]);
-  return distance;
 }
 
 }  // namespace handeye

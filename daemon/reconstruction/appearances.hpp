@@ -26,7 +26,4 @@ class Appearances {
   std::int64_t told_{0};
 };
 
-/// Differing bits, 0 to 256.
-int appearance_distance(const AppearanceBits& a, const AppearanceBits& b);
-
 }  // namespace handeye

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "daemon/reconstruction/point_trust.hpp"
+#include "daemon/tracking/hamming_distance.hpp"
 
 namespace handeye {
 namespace {
@@ -18,6 +19,14 @@ constexpr double kSecondLookPx = 8.0;
 constexpr int kFewestRecognised = 20;
 /// Share of the features recognised anywhere that must agree on a pose.
 constexpr double kFewestRight = 0.15;
+/// Rms of what was recognised over the root of how many: how far the join may be off. Where corners
+/// are found beside their old points it is 0.2 px, and a part that goes on from there comes out
+/// bent by up to 0.8 deg, which is worse than two parts; where the same spots are found, 0.1 px.
+constexpr double kMostJoinErrorPx = 0.13;
+
+bool holds_together(const Resection& join) {
+  return join.reprojection_px <= kMostJoinErrorPx * std::sqrt(join.inliers);
+}
 
 bool is_candidate(const Track& track) {
   return track.has_point && track.appearance && is_trusted(track);
@@ -62,7 +71,7 @@ std::vector<Recognition> recognise_anywhere(const FrameRecord& frame,
     int track = -1;
     for (const int candidate : candidates) {
       const int distance =
-          appearance_distance(*bits, *scene.tracks[static_cast<std::size_t>(candidate)].appearance);
+          hamming_distance(*bits, *scene.tracks[static_cast<std::size_t>(candidate)].appearance);
       if (distance < nearest) {
         second = track >= 0 ? nearest : second;
         nearest = distance;
@@ -136,7 +145,7 @@ std::vector<Recognition> recognise_near(const CameraModel& camera, const Pose& e
       const double distance_px = (point.pixel - Eigen::Vector2d(seen.x, seen.y)).norm();
       if (distance_px >= nearest_px) continue;
       const auto& its = *scene.tracks[static_cast<std::size_t>(point.track)].appearance;
-      if (appearance_distance(*bits, its) > kSameHere) continue;
+      if (hamming_distance(*bits, its) > kSameHere) continue;
       nearest_px = distance_px;
       track = point.track;
     }
@@ -161,7 +170,7 @@ std::optional<Relocalisation> relocalise(const CameraModel& camera, const FrameR
   strict.min_inliers = kFewestRecognised;
   const auto sure = refine_pose(camera, to_matches(found.recognised, frame, scene),
                                 rough->eye_from_scene, strict);
-  if (!sure) return std::nullopt;
+  if (!sure || !holds_together(*sure)) return std::nullopt;
   found.eye_from_scene = sure->eye_from_scene;
   return found;
 }

@@ -33,7 +33,8 @@ struct Relocalisation {
 
 /// Finds a frame in a scene none of whose features it shares, by what they look like: the nearest
 /// description of all, clearly nearer than the second, P3P in RANSAC, and a second look near where
-/// that pose puts the points. Nothing where the scene is not what the frame shows. Deterministic.
+/// that pose puts the points. Nothing where the scene is not what the frame shows, or what was
+/// recognised lies too loosely for a part to go on from. Deterministic.
 std::optional<Relocalisation> relocalise(const CameraModel& camera, const FrameRecord& frame,
                                          const Appearances& appearances,
                                          const ResectionOptions& options, const Scene& scene);

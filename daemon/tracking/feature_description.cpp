@@ -2,7 +2,6 @@
 #include "daemon/tracking/feature_description.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -41,16 +40,6 @@ bool has_whole_patch(const cv::Mat& grey, cv::Point middle) {
 }
 
 }  // namespace
-
-int hamming_distance(const FeatureDescription& a, const FeatureDescription& b) {
-  std::array<std::uint64_t, 4> left{};
-  std::array<std::uint64_t, 4> right{};
-  std::memcpy(left.data(), a.bits.data(), a.bits.size());
-  std::memcpy(right.data(), b.bits.data(), b.bits.size());
-  int distance = 0;
-  for (std::size_t i = 0; i < left.size(); ++i) distance += std::popcount(left[i] ^ right[i]);
-  return distance;
-}
 
 FeatureDescriber::FeatureDescriber()
     : orb_(cv::ORB::create(500, 1.2F, 1, kHalfPatch, 0, 2, cv::ORB::HARRIS_SCORE, kPatchPx)) {}

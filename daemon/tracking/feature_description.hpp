@@ -11,10 +11,6 @@
 
 namespace handeye {
 
-/// Differing bits of two descriptions, 0 to 256: under about 60 for the same spot seen again, about
-/// 128 for two that have nothing in common.
-int hamming_distance(const FeatureDescription& a, const FeatureDescription& b);
-
 /// Describes each tracked feature once in its life, by ORB (Rublee et al. 2011: BRIEF turned to the
 /// patch's centroid), so that its point can be recognised after its track was lost. Works now and
 /// then on all features that have none yet, since most of the cost is smoothing the image: well

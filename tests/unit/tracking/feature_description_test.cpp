@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "daemon/tracking/hamming_distance.hpp"
 #include "tests/unit/tracking/moving_texture.hpp"
 
 namespace handeye {
@@ -53,10 +54,10 @@ TEST(FeatureDescriber, RecognisesTheSameSpotLater) {
   for (const auto& [place, description] : later) {
     if (!first.contains(place)) continue;
     ++same;
-    const int distance = hamming_distance(first.at(place), description);
+    const int distance = hamming_distance(first.at(place).bits, description.bits);
     if (distance < 64) ++recognised;
     for (const auto& [other, its] : first) {
-      if (other != place && hamming_distance(its, description) <= distance) {
+      if (other != place && hamming_distance(its.bits, description.bits) <= distance) {
         ++mistaken;
         break;
       }
@@ -121,7 +122,7 @@ TEST(FeatureDescriber, FindsTheFeaturesInAShrunkImage) {
   for (int frame = 0; frame < kFrames; ++frame) {
     plain.describe(texture.image(0), 1.0, tracked);
     for (const auto& its : tracked.descriptions) {
-      EXPECT_EQ(hamming_distance(its, shrunk.at(its.feature_id)), 0);
+      EXPECT_EQ(hamming_distance(its.bits, shrunk.at(its.feature_id).bits), 0);
       ++compared;
     }
   }

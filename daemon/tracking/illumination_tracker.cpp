@@ -51,7 +51,8 @@ class IlluminationTracker final : public FeatureTracker {
     renew_appearances();
     top_up();
     report(timestamp_ns, tracked);
-    describer_.describe(halvings_ > 0 ? now_.shrunk() : grey, 1 << halvings_, tracked);
+    // In the given image, however wide: shrunk, fewer are recognised and more are mistaken.
+    describer_.describe(grey, 1.0, tracked);
     std::swap(now_, before_);
   }
 

@@ -36,9 +36,6 @@ class ImagePyramid {
   /// May all pixels of [left, right] x [top, bottom] be looked at? Within image and padding.
   bool all_usable(int level, int left, int top, int right, int bottom) const;
 
-  /// The image halved to level 0's size, not smoothed; empty without halvings.
-  const cv::Mat& shrunk() const { return shrunk_; }
-
   /// Fraction of level 0 that may be looked at.
   double usable_share() const { return usable_share_; }
 

@@ -69,8 +69,9 @@ constexpr int kFirstFrames = 24;  ///< in which the memory is taken
 constexpr int kFrames = 60;
 
 /// What ORB allocates when it describes new features (every third frame at most, mostly every
-/// eighth): its own copies of image and key points, which its interface gives no way to keep.
-constexpr std::int64_t kMostForDescriptions = 400;
+/// eighth), 40 at most as measured: its own copies of image and key points, which its interface
+/// gives no way to keep.
+constexpr std::int64_t kMostForDescriptions = 60;
 
 /// No mask, a spot, and one that leaves a third of the image, in turn.
 cv::Mat mask_of(cv::Size size, int frame) {

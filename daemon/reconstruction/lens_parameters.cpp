@@ -77,18 +77,12 @@ double largest_difference_px(const CameraModel& first, const CameraModel& second
   return largest;
 }
 
-double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance) {
-  double largest = 0.0;
-  for_grid(camera, [&](const Eigen::Vector2d& pixel) {
-    const auto ray = unproject(camera, pixel);
-    if (!ray) return;
-    const double r2 = ray->squaredNorm();
-    const Eigen::Vector2d by_k(r2, r2 * r2);
-    const double variance = by_k.dot(covariance.block<2, 2>(kK1, kK1) * by_k);
-    largest =
-        std::max(largest, focal_px(camera) * ray->norm() * std::sqrt(std::max(0.0, variance)));
-  });
-  return largest;
+double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance,
+                           const Eigen::Vector2d& ray) {
+  const double r2 = ray.squaredNorm();
+  const Eigen::Vector2d by_k(r2, r2 * r2);
+  const double variance = by_k.dot(covariance.block<2, 2>(kK1, kK1) * by_k);
+  return focal_px(camera) * ray.norm() * std::sqrt(std::max(0.0, variance));
 }
 
 }  // namespace handeye

@@ -41,8 +41,9 @@ CameraModel plain_camera(int width, int height, double horizontal_field_rad);
 /// How far apart [px] two lenses see the same ray, the largest over the image of the first.
 double largest_difference_px(const CameraModel& first, const CameraModel& second);
 
-/// Standard deviation [px] of what the distortion moves a ray by, the largest over the image, by a
-/// covariance of the parameters.
-double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance);
+/// Standard deviation [px] of what the distortion moves a ray (x/z, y/z) by, by a covariance of the
+/// parameters.
+double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance,
+                           const Eigen::Vector2d& ray);
 
 }  // namespace handeye

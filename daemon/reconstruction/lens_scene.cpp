@@ -63,4 +63,17 @@ SceneFit scene_fit(const CameraModel& camera, double max_reprojection_px, const 
   return {std::sqrt(squares_px2 / count), inliers / count};
 }
 
+double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance,
+                           const Scene& scene) {
+  double largest_px = 0.0;
+  for (const Track& track : scene.tracks) {
+    if (!track.has_point) continue;
+    for (const TrackObservation& seen : track.observations) {
+      if (!seen.inlier) continue;
+      largest_px = std::max(largest_px, distortion_sigma_px(camera, covariance, seen.ray));
+    }
+  }
+  return largest_px;
+}
+
 }  // namespace handeye

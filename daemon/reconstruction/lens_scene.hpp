@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "daemon/reconstruction/lens_parameters.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "daemon/reconstruction/scene.hpp"
 
@@ -21,5 +22,10 @@ struct SceneFit {
   double inlier_ratio{0};  ///< share of the observations that agree with their points
 };
 SceneFit scene_fit(const CameraModel& camera, double max_reprojection_px, const Scene& scene);
+
+/// The largest standard deviation [px] of what the distortion moves a ray by, over the area in
+/// which features were seen: beyond it a lens may do what it will.
+double distortion_sigma_px(const CameraModel& camera, const LensMatrix& covariance,
+                           const Scene& scene);
 
 }  // namespace handeye

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <future>
+#include <vector>
 
 #include "daemon/geometry/pose.hpp"
 #include "daemon/reconstruction/lens_fit.hpp"
@@ -15,6 +18,8 @@ namespace {
 constexpr std::array kFieldsDeg{40.0, 55.0, 72.0, 95.0};
 constexpr std::array kDistortions{0.0, -0.25};  ///< k1
 constexpr int kMaxKeyframes = 20;
+/// Features last for seconds: so many frames show as much of a lens as all that lie between them.
+constexpr std::size_t kMaxFrames = 60;
 /// A lens under which fewer of the frames could be registered is out.
 constexpr double kMinRegistered = 0.5;
 /// Errors beyond this many px count no more than this.
@@ -25,11 +30,32 @@ struct Hypothesis {
   double error_px{0};
 };
 
+std::vector<TrackedFrame> thinned(std::span<const TrackedFrame> frames) {
+  if (frames.size() <= kMaxFrames) return {frames.begin(), frames.end()};
+  std::vector<TrackedFrame> kept;
+  for (std::size_t i = 0; i < kMaxFrames; ++i) {
+    kept.push_back(frames[i * frames.size() / kMaxFrames]);
+  }
+  return kept;
+}
+
+std::vector<CameraModel> lenses_to_try(int width, int height) {
+  std::vector<CameraModel> lenses;
+  for (const double field_deg : kFieldsDeg) {
+    for (const double k1 : kDistortions) {
+      lenses.push_back(plain_camera(width, height, rad_from_deg(field_deg)));
+      lenses.back().distortion[0] = k1;
+    }
+  }
+  return lenses;
+}
+
 /// What becomes of a lens: reconstructs under it, then adjusts it.
 std::optional<Hypothesis> carry(const CameraModel& start, std::span<const TrackedFrame> frames,
                                 const ReconstructionOptions& options) {
   ReconstructionOptions wide = options;
   wide.max_reprojection_px = 2.0 * options.max_reprojection_px;
+  wide.background = false;  // the lenses themselves share the processors
   IncrementalReconstruction reconstruction(start, wide);
   for (const TrackedFrame& frame : frames) reconstruction.add(frame);
   const Reconstruction found = reconstruction.current();
@@ -53,15 +79,22 @@ std::optional<Hypothesis> carry(const CameraModel& start, std::span<const Tracke
 std::optional<CameraModel> find_start_lens(int width, int height,
                                            std::span<const TrackedFrame> frames,
                                            const ReconstructionOptions& options) {
-  std::optional<Hypothesis> best;
-  for (const double field_deg : kFieldsDeg) {
-    for (const double k1 : kDistortions) {
-      CameraModel start = plain_camera(width, height, rad_from_deg(field_deg));
-      start.distortion[0] = k1;
-      const auto hypothesis = carry(start, frames, options);
-      if (!hypothesis) continue;
-      if (!best || hypothesis->error_px < best->error_px) best = hypothesis;
+  const std::vector<TrackedFrame> few = thinned(frames);
+  const std::vector<CameraModel> lenses = lenses_to_try(width, height);
+  std::vector<std::optional<Hypothesis>> hypotheses(lenses.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < lenses.size(); i = next++) {
+      hypotheses[i] = carry(lenses[i], few, options);
     }
+  };
+  std::future<void> helper = std::async(std::launch::async, work);
+  work();
+  helper.get();
+  // In their order, whichever was done first.
+  std::optional<Hypothesis> best;
+  for (const auto& hypothesis : hypotheses) {
+    if (hypothesis && (!best || hypothesis->error_px < best->error_px)) best = hypothesis;
   }
   if (!best) return std::nullopt;
   return best->camera;

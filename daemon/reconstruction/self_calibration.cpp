@@ -156,7 +156,7 @@ void SelfCalibration::judge_lens(Reconstruction& reconstruction) const {
                 .centre_px = std::max(sigma[kCentreX], sigma[kCentreY]),
                 .k1 = sigma[kK1],
                 .k2 = sigma[kK2],
-                .distortion_px = distortion_sigma_px(camera_, covariance)};
+                .distortion_px = distortion_sigma_px(camera_, covariance, scene)};
   lens.observable = settled_ && lens.sigma.focal_px <= kMaxFocalSigma * focal_px(camera_) &&
                     lens.sigma.distortion_px <= kMaxDistortionSigmaPx * camera_.width / 640.0 &&
                     refutes_other_lenses(

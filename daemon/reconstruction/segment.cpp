@@ -20,7 +20,7 @@ constexpr int kMaxMisses = 5;
 constexpr double kKeyframeInlierRatio = 0.7;
 /// Where frames are few every one counts: after so long a smaller movement makes a keyframe.
 constexpr std::int64_t kLongAgo_ns = 300'000'000;
-constexpr double kMovedPx = 8.0;
+constexpr double kMovedPx = 1.0;
 constexpr int kWindowIterations = 6;
 /// Trust of the points that a part starts with: several views have agreed on them.
 constexpr int kStartTrust = 4;

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/reconstruction/median.hpp"
+#include "daemon/geometry/median.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "tests/unit/reconstruction/synthetic_tracks.hpp"
 

@@ -58,7 +58,7 @@ struct LensSigma {
   double focal_px{0};
   double centre_px{0};  ///< the larger of cx and cy
   double k1{0}, k2{0};
-  double distortion_px{0};  ///< of where the lens takes a ray, the largest over the image
+  double distortion_px{0};  ///< of where the lens takes a ray, the largest where features were seen
 };
 
 /// The lens as it came out of a reconstruction.

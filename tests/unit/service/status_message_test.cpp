@@ -63,7 +63,8 @@ TEST(ReadRequest, RejectsNonsenseInWords) {
   }
   request_t other_version = good_request();
   other_version.protocol_version = request_t::VERSION + 1;
-  EXPECT_THAT(problem_with(other_version), HasSubstr("version " + std::to_string(request_t::VERSION)));
+  EXPECT_THAT(problem_with(other_version),
+              HasSubstr("version " + std::to_string(request_t::VERSION)));
   request_t no_id = good_request();
   no_id.request_id = 0;
   EXPECT_THAT(problem_with(no_id), HasSubstr("request_id"));

@@ -121,9 +121,10 @@ struct IncrementalReconstruction::Impl {
     return kept;
   }
 
-  /// What most frames suffered from, when nothing could be started.
+  /// What most frames suffered from, when nothing could be started or was worth keeping.
   ReconstructionState prevailing_state() const {
-    const auto most = std::max_element(state_counts.begin(), state_counts.end());
+    static_assert(static_cast<int>(ReconstructionState::kTracking) == 3);
+    const auto most = std::max_element(state_counts.begin(), state_counts.end() - 1);
     return static_cast<ReconstructionState>(most - state_counts.begin());
   }
 

@@ -66,7 +66,14 @@ bool Segment::lost() const {
 }
 
 FrameHistory::Frames Segment::take_lost_frames() {
-  return frames_.take_last(started() ? std::exchange(misses_, 0) : 1);
+  FrameHistory::Frames lost = frames_.take_last(started() ? std::exchange(misses_, 0) : 1);
+  // A finish() in between may have found one a pose after all: it is of this scene, not the next.
+  for (FrameRecord& frame : lost) {
+    registered_ -= frame.eye_from_scene ? 1 : 0;
+    frame.eye_from_scene.reset();
+    frame.inliers = 0;
+  }
+  return lost;
 }
 
 FrameHistory::Frames Segment::take_all_frames() {

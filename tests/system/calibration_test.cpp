@@ -158,6 +158,25 @@ std::set<std::int64_t> requests_named(const Listener& listener) {
   return ids;
 }
 
+TEST_F(CalibrationSystem, FindsTheLensThatNobodyTold) {
+  Room room;
+  ASSERT_TRUE(room.start_simulator({.seed = 5}));
+  ASSERT_TRUE(room.start_daemon(
+      {.intrinsics = "",
+       .extra_lines = "intrinsics_mode = \"estimate\"\nwidth = 640\nheight = 480\n"}));
+  Process client(room.client_words("calibrate", {"--json"}));
+  ASSERT_TRUE(room.listener().spin_until([&] { return client.has_ended(); }, kCalibrationTimeout));
+  const nlohmann::json result = accepted_result(*client.wait(seconds(0)));
+  if (HasFailure()) return;
+  const nlohmann::json truth = read_json(room.path("truth.json"));
+  expect_true(result, truth);
+  const nlohmann::json& lens = result["camera"];
+  EXPECT_EQ(lens["source"], "estimated");
+  EXPECT_TRUE(lens["observable"].get<bool>());
+  const double true_focal_px = truth["camera"]["fx"].get<double>();
+  EXPECT_NEAR(lens["fx"].get<double>(), true_focal_px, 0.005 * true_focal_px);
+}
+
 TEST_F(CalibrationSystem, TwoRoomsAtATimeDoNotHearEachOther) {
   Room rooms[2];
   std::unique_ptr<Process> clients[2];

@@ -27,7 +27,7 @@ struct TypeFingerprint {
   std::uint64_t frozen;
 };
 
-// Of protocol version 2.
+// Of protocol version 3.
 const TypeFingerprint kFingerprints[] = {
     {"body_t", body_t::getHash(), 0x0459e98b91cec78c},
     {"camera_pose_t", camera_pose_t::getHash(), 0xc9466293b695bafd},
@@ -36,13 +36,13 @@ const TypeFingerprint kFingerprints[] = {
     {"image_t", image_t::getHash(), 0xcceab2c397803b46},
     {"method_result_t", method_result_t::getHash(), 0xb5a02e5fd4c5d867},
     {"request_t", request_t::getHash(), 0xbe8a71a4b093a7a1},
-    {"result_t", result_t::getHash(), 0x32a204f62d932a65},
+    {"result_t", result_t::getHash(), 0x2dd51f4f03cd5d92},
     {"status_t", status_t::getHash(), 0x06f290ba33cf4217},
     {"tracker_frame_t", tracker_frame_t::getHash(), 0x6ef6fc1d940d7e44},
 };
 
 TEST(MessageTypes, AreThoseOfTheirProtocolVersion) {
-  EXPECT_EQ(request_t::VERSION, 2) << "write the fingerprints of the new version into the table";
+  EXPECT_EQ(request_t::VERSION, 3) << "write the fingerprints of the new version into the table";
   for (const TypeFingerprint& fingerprint : kFingerprints) {
     EXPECT_EQ(static_cast<std::uint64_t>(fingerprint.actual), fingerprint.frozen)
         << fingerprint.type << ".lcm has changed: programs and recordings of before will not "

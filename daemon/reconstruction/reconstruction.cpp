@@ -61,7 +61,7 @@ struct IncrementalReconstruction::Impl {
     return last_state;
   }
 
-  /// The part in work is over for now; its unregistered rest begins the next.
+  /// The part in work has been lost; its unregistered rest begins the next.
   void replace_active() {
     active->settle();
     auto rest = active->take_lost_frames();

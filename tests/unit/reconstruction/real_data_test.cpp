@@ -104,6 +104,7 @@ TEST_P(SinusEndoscopy, IsRegistered) {
   ASSERT_EQ(result.state, ReconstructionState::kTracking);
   const std::vector<RegisteredFrame> frames = main_part(result);
   EXPECT_GE(frames.size(), 33U);
+  EXPECT_LT(result.reprojection_px, 2.0);
   const double rotation_deg = relative_rotation_deg(frames, sinus.eye_from_scene);
   const auto error = test::compare(frames, sinus.eye_from_scene);
   std::printf(

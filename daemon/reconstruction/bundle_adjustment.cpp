@@ -7,8 +7,8 @@
 #include <ceres/ceres.h>
 #include <ceres/normal_prior.h>
 
-#include "daemon/reconstruction/pose_manifold.hpp"
-#include "daemon/reconstruction/reprojection_cost.hpp"
+#include "daemon/adjustment/pose_manifold.hpp"
+#include "daemon/adjustment/reprojection_cost.hpp"
 
 namespace handeye {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "daemon/geometry/camera_model.hpp"
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 #include "daemon/reconstruction/scene.hpp"
 
 namespace handeye {

@@ -2,7 +2,7 @@
 #include "daemon/reconstruction/frame_record.hpp"
 
 #include "daemon/geometry/median.hpp"
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/lens_fit.hpp"
 #include "daemon/reconstruction/lens_scene.hpp"
-#include "daemon/reconstruction/projection.hpp"
 
 namespace handeye {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "daemon/reconstruction/scene.hpp"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 #include "daemon/reconstruction/scene.hpp"
 

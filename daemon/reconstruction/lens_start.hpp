@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 #include "daemon/reconstruction/reconstruction.hpp"
 
 namespace handeye {

@@ -43,6 +43,20 @@ struct RegisteredFrame {
   double reprojection_px{0};  ///< rms over its inlier observations
   int inliers{0};
   int part{0};  ///< frames of one part share scene and scale; 0 has the most frames
+  /// Of a frame that is no keyframe: of (w [rad], dt [scene units]) of eye_from_scene, R = Exp(w)
+  /// R, t = t + dt, at an image noise of 1 px, the points as they are.
+  Matrix6d unit_covariance{Matrix6d::Zero()};
+};
+
+/// A point of a scene and where the keyframes saw it.
+struct ScenePoint {
+  struct Observation {
+    int frame{0};  ///< position in Reconstruction::frames; a keyframe
+    Eigen::Vector2d pixel;
+  };
+  int part{0};
+  Eigen::Vector3d point_scene{Eigen::Vector3d::Zero()};  ///< scene units
+  std::vector<Observation> observations;                 ///< the inliers, ordered by frame
 };
 
 /// Why there is no reconstruction (yet).
@@ -76,6 +90,7 @@ struct Reconstruction {
   ReconstructionState state{ReconstructionState::kTooFewFeatures};
   std::vector<RegisteredFrame> frames;  ///< of all parts worth keeping, in order of time
   int parts{0};
+  std::vector<ScenePoint> structure;  ///< the points of those parts
   int points{0};
   double reprojection_px{0};  ///< rms over all inlier observations of those parts
   Lens lens;

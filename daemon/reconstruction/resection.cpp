@@ -9,7 +9,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "daemon/geometry/median.hpp"
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 namespace {

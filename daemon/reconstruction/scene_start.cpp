@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/start_candidate.hpp"
 #include "daemon/reconstruction/start_choice.hpp"
 #include "daemon/reconstruction/start_factorisation.hpp"

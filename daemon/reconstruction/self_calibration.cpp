@@ -6,13 +6,13 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/frame_record.hpp"
 #include "daemon/reconstruction/lens_challenge.hpp"
 #include "daemon/reconstruction/lens_fit.hpp"
 #include "daemon/reconstruction/lens_information.hpp"
 #include "daemon/reconstruction/lens_scene.hpp"
 #include "daemon/reconstruction/lens_start.hpp"
-#include "daemon/reconstruction/projection.hpp"
 
 namespace handeye {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "daemon/geometry/median.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/bundle_adjustment.hpp"
-#include "daemon/reconstruction/projection.hpp"
 #include "daemon/reconstruction/scene_points.hpp"
 #include "daemon/reconstruction/triangulation.hpp"
 

@@ -25,12 +25,14 @@ void PoseBuffer::push(const HandSample& sample) {
   if (size_ == ring_.size()) {
     first_ = (first_ + 1) % ring_.size();
     --size_;
+    ++forgotten_;
   }
   ring_[(first_ + size_) % ring_.size()] = sample;
   ++size_;
 }
 
 void PoseBuffer::clear() {
+  forgotten_ += static_cast<std::int64_t>(size_);
   first_ = 0;
   size_ = 0;
 }
@@ -63,6 +65,8 @@ HandLookup PoseBuffer::lookup(std::int64_t timestamp_ns) const {
   if (a.timestamp_ns == timestamp_ns) {
     found.status = a.tracked ? LookupStatus::kOk : LookupStatus::kHidden;
     found.room_from_hand = a.room_from_hand;
+    found.sample = forgotten_ + static_cast<std::int64_t>(before);
+    if (a.covariance) found.sample_covariance = a.covariance->cast<double>();
     if (a.tracked) add_velocity(before, found);
     return found;
   }
@@ -78,6 +82,10 @@ HandLookup PoseBuffer::lookup(std::int64_t timestamp_ns) const {
   found.status = LookupStatus::kOk;
   found.fraction = static_cast<double>(timestamp_ns - a.timestamp_ns) /
                    static_cast<double>(b.timestamp_ns - a.timestamp_ns);
+  found.sample = forgotten_ + static_cast<std::int64_t>(before);
+  if (a.covariance && b.covariance) {
+    found.sample_covariance = 0.5 * (*a.covariance + *b.covariance).cast<double>();
+  }
   found.room_from_hand = interpolate(a.room_from_hand, b.room_from_hand, found.fraction);
   add_velocity(before, found);
   return found;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "daemon/geometry/pose.hpp"
@@ -14,6 +15,9 @@ struct HandSample {
   std::int64_t timestamp_ns{0};  ///< host CLOCK_MONOTONIC, after the clock model
   bool tracked{false};           ///< false: hidden; the pose is meaningless
   Pose room_from_hand{Pose::Identity()};
+  /// As the tracker itself says (6dcov): of (w [rad], dt [mm]) in the room, R = Exp(w) R_measured,
+  /// t = t_measured + dt.
+  std::optional<Eigen::Matrix<float, 6, 6>> covariance;
 };
 
 /// Outcome of a look-up: ordinary results, not errors.
@@ -30,6 +34,9 @@ struct HandLookup {
   LookupStatus status{LookupStatus::kEmpty};
   Pose room_from_hand{Pose::Identity()};  ///< only for kOk
   double fraction{0};                     ///< 0..1 between the two neighbours
+  std::int64_t sample{0};  ///< the earlier neighbour, counted from the first that was ever pushed
+  /// Of one sample here, from both neighbours' own; nothing: they said none.
+  std::optional<Matrix6d> sample_covariance;
   /// Angular velocity in the hand frame [rad/s] and velocity of the hand's origin in the room
   /// [mm/s], over up to two more samples on either side: between two samples of a 60 Hz tracker
   /// noise of 0.06 deg would make 5 deg/s.
@@ -66,6 +73,7 @@ class PoseBuffer {
   std::vector<HandSample> ring_;
   std::size_t first_{0};
   std::size_t size_{0};
+  std::int64_t forgotten_{0};  ///< samples that were pushed before the oldest
   std::uint64_t out_of_order_{0};
 };
 

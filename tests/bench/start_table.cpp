@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/frame_record.hpp"
-#include "daemon/reconstruction/projection.hpp"
 #include "daemon/reconstruction/scene_start.hpp"
 #include "daemon/reconstruction/start_candidate.hpp"
 #include "daemon/reconstruction/start_choice.hpp"

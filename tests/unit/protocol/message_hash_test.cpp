@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <handeye/body_t.hpp>
 #include <handeye/camera_pose_t.hpp>
+#include <handeye/clock_status_t.hpp>
 #include <handeye/datagram_t.hpp>
 #include <handeye/device_status_t.hpp>
 #include <handeye/image_t.hpp>
@@ -27,22 +28,23 @@ struct TypeFingerprint {
   std::uint64_t frozen;
 };
 
-// Of protocol version 3.
+// Of protocol version 4.
 const TypeFingerprint kFingerprints[] = {
     {"body_t", body_t::getHash(), 0x0459e98b91cec78c},
-    {"camera_pose_t", camera_pose_t::getHash(), 0xc9466293b695bafd},
+    {"camera_pose_t", camera_pose_t::getHash(), 0xf8ff33438e8861ac},
+    {"clock_status_t", clock_status_t::getHash(), 0xe60f44d345892547},
     {"datagram_t", datagram_t::getHash(), 0x1e4752c4e2527296},
-    {"device_status_t", device_status_t::getHash(), 0xfd15878ddf5e71b4},
+    {"device_status_t", device_status_t::getHash(), 0xfb7c347269e4c01a},
     {"image_t", image_t::getHash(), 0xcceab2c397803b46},
-    {"method_result_t", method_result_t::getHash(), 0xb5a02e5fd4c5d867},
+    {"method_result_t", method_result_t::getHash(), 0x8c6cd0142c213234},
     {"request_t", request_t::getHash(), 0xbe8a71a4b093a7a1},
-    {"result_t", result_t::getHash(), 0x2dd51f4f03cd5d92},
-    {"status_t", status_t::getHash(), 0x06f290ba33cf4217},
+    {"result_t", result_t::getHash(), 0xdb62aadf3b3cdccd},
+    {"status_t", status_t::getHash(), 0xfa74f5e2b7d9c2ad},
     {"tracker_frame_t", tracker_frame_t::getHash(), 0x6ef6fc1d940d7e44},
 };
 
 TEST(MessageTypes, AreThoseOfTheirProtocolVersion) {
-  EXPECT_EQ(request_t::VERSION, 3) << "write the fingerprints of the new version into the table";
+  EXPECT_EQ(request_t::VERSION, 4) << "write the fingerprints of the new version into the table";
   for (const TypeFingerprint& fingerprint : kFingerprints) {
     EXPECT_EQ(static_cast<std::uint64_t>(fingerprint.actual), fingerprint.frozen)
         << fingerprint.type << ".lcm has changed: programs and recordings of before will not "

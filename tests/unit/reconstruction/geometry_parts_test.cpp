@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/reconstruction/pose_manifold.hpp"
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/adjustment/pose_manifold.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/resection.hpp"
 #include "daemon/reconstruction/triangulation.hpp"
 #include "daemon/reconstruction/two_view.hpp"

@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/frame_record.hpp"
 #include "daemon/reconstruction/lens_fit.hpp"
 #include "daemon/reconstruction/lens_information.hpp"
-#include "daemon/reconstruction/projection.hpp"
 #include "tests/unit/reconstruction/synthetic_tracks.hpp"
 
 namespace handeye {

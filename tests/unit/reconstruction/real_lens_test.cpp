@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/self_calibration.hpp"
 
 namespace handeye {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "tests/unit/reconstruction/synthetic_tracks.hpp"
 
 namespace handeye {

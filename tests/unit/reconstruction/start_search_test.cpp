@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 namespace {

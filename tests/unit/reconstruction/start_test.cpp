@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 #include "daemon/reconstruction/scene_start.hpp"
 #include "daemon/reconstruction/start_consensus.hpp"
 #include "daemon/reconstruction/start_search.hpp"

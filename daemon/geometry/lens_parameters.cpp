@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 namespace {

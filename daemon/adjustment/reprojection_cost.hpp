@@ -5,7 +5,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include "daemon/geometry/camera_model.hpp"
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 
 namespace handeye {
 

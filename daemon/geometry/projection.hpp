@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "daemon/geometry/camera_model.hpp"
-#include "daemon/reconstruction/lens_parameters.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 
 namespace handeye {
 

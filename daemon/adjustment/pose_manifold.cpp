@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/reconstruction/pose_manifold.hpp"
+#include "daemon/adjustment/pose_manifold.hpp"
 
 namespace handeye {
 

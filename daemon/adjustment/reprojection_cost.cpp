@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/reconstruction/reprojection_cost.hpp"
+#include "daemon/adjustment/reprojection_cost.hpp"
 
 #include <cmath>
 
-#include "daemon/reconstruction/pose_manifold.hpp"
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/adjustment/pose_manifold.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 namespace {

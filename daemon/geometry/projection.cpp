@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/reconstruction/projection.hpp"
+#include "daemon/geometry/projection.hpp"
 
 namespace handeye {
 

@@ -88,19 +88,21 @@ double least_log_scale_sigma(const MaximumLikelihoodResult& result) {
   return least;
 }
 
-/// Whether the unknown scale is what makes the translation uncertain.
-bool scale_is_to_blame(const MaximumLikelihoodResult& result, const JudgeOptions& options) {
+/// Whether the unknown scale is what makes the translation uncertain: its share of the variance is
+/// the likelihood's, the variance the answer's.
+bool scale_is_to_blame(const MaximumLikelihoodResult& result, double sigma_answer_mm,
+                       const JudgeOptions& options) {
   const double sigma = result.sigma_translation_mm();
   const double known = result.sigma_translation_known_scale_mm;
   return least_log_scale_sigma(result) > options.max_log_scale_sigma ||
-         (options.solver.estimate_scale && sigma > options.wanted_translation_mm &&
+         (options.solver.estimate_scale && sigma_answer_mm > options.wanted_translation_mm &&
           known * known < (1.0 - kScaleShare) * sigma * sigma);
 }
 
 /// What the answer is worth.
 void weigh(std::span<const HandEyeObservation> observations, const MaximumLikelihoodResult& result,
-           const JudgeOptions& options, Judgement& judgement) {
-  judgement.covariance = result.covariance;
+           const Matrix6d& covariance, const JudgeOptions& options, Judgement& judgement) {
+  judgement.covariance = covariance;
   if (result.poses_used >= 2 * kMinHalf) {
     if (const auto halves = compare_halves(observations, result, options.solver)) {
       judgement.halves_chi2 = halves->chi2;
@@ -137,9 +139,9 @@ bool turns_about_camera(std::span<const HandEyeObservation> observations, const 
   });
 }
 
-/// What is wrong with a motion that did not suffice.
+/// What is wrong with a motion that did not suffice. `result`: nothing where there is no answer.
 MotionProblem problem_of(std::span<const HandEyeObservation> observations,
-                         const std::optional<MaximumLikelihoodResult>& result,
+                         const MaximumLikelihoodResult* result, double sigma_answer_mm,
                          const JudgeOptions& options) {
   std::vector<HandEyeObservation> usable;
   std::vector<Pose> hand;
@@ -155,34 +157,60 @@ MotionProblem problem_of(std::span<const HandEyeObservation> observations,
   const MotionProblem problem = classify(motion_facts(hand), noise, on_the_spot, scale);
   if (problem != MotionProblem::kFixedPoint && problem != MotionProblem::kNone) return problem;
   // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
-  const bool pivot =
-      result ? scale_is_to_blame(*result, options) : problem == MotionProblem::kFixedPoint;
+  const bool pivot = result ? scale_is_to_blame(*result, sigma_answer_mm, options)
+                            : problem == MotionProblem::kFixedPoint;
   return pivot ? MotionProblem::kFixedPoint : MotionProblem::kUncertain;
+}
+
+/// Rotation too small to know the camera's axes by, or a remedy that no axis changes, leaves
+/// nothing to choose.
+MissingMotion missing_motion(std::span<const HandEyeObservation> observations,
+                             const JudgedAnswer& answer, const Judgement& judgement,
+                             const JudgeOptions& options) {
+  if (judgement.problem != MotionProblem::kSingleAxis &&
+      judgement.problem != MotionProblem::kUncertain) {
+    return remedy(judgement.problem);
+  }
+  const double rotation = sigma_rotation_deg(judgement.covariance) / options.wanted_rotation_deg;
+  const double translation =
+      sigma_translation_mm(judgement.covariance) / options.wanted_translation_mm;
+  const Observability& weakest = judgement.observability;
+  return missing_turn(
+      observations, answer.hand_from_eye,
+      (rotation > translation ? weakest.rotation_deg : weakest.translation_mm).axis_in_hand);
 }
 
 }  // namespace
 
 Judgement judge(std::span<const HandEyeObservation> observations,
-                const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
+                const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
+                const JudgeOptions& options) {
   Judgement judgement;
-  if (result) weigh(observations, *result, options, judgement);
-  const bool enough = result && result->poses_used >= kMinPoses;
-  if (enough) {
-    const bool two_halves = judgement.halves_chi2.has_value() || result->poses_used < 2 * kMinHalf;
-    if (two_halves && suffices(judgement.covariance, *result, options)) {
-      judgement.problem = MotionProblem::kNone;
-      return judgement;
-    }
+  weigh(observations, result, answer.covariance, options, judgement);
+  const bool enough = result.poses_used >= kMinPoses;
+  const bool two_halves = judgement.halves_chi2.has_value() || result.poses_used < 2 * kMinHalf;
+  if (enough && two_halves && suffices(judgement.covariance, result, options)) {
+    judgement.problem = MotionProblem::kNone;
+    return judgement;
   }
   // Precise by itself: the motion was enough, and the halves disagree.
-  const bool uncertain = enough && suffices(result->covariance, *result, options);
-  judgement.problem =
-      uncertain ? MotionProblem::kUncertain : problem_of(observations, result, options);
+  const bool uncertain = enough && suffices(answer.covariance, result, options);
+  judgement.problem = uncertain ? MotionProblem::kUncertain
+                                : problem_of(observations, &result,
+                                             sigma_translation_mm(answer.covariance), options);
+  judgement.missing = missing_motion(observations, answer, judgement, options);
+  return judgement;
+}
+
+Judgement judge(std::span<const HandEyeObservation> observations,
+                const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   if (result) {
-    judgement.missing =
-        missing_motion(observations, result->solution.hand_from_eye, judgement.observability,
-                       judgement.problem == MotionProblem::kFixedPoint);
+    return judge(observations, *result, {result->solution.hand_from_eye, result->covariance},
+                 options);
   }
+  Judgement judgement;
+  judgement.problem = problem_of(observations, nullptr, 0, options);
+  judgement.missing = remedy(judgement.problem);
   return judgement;
 }
 
@@ -190,6 +218,24 @@ MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const P
                                    bool images_without_parallax) {
   return classify(motion_facts(room_from_hand), noise, images_without_parallax,
                   ScaleMode::kUnknown);
+}
+
+MissingMotion remedy(MotionProblem problem) {
+  switch (problem) {
+    case MotionProblem::kNone:
+      return MissingMotion::kNone;
+    case MotionProblem::kNoMotion:
+    case MotionProblem::kInsufficientRotation:
+      return MissingMotion::kTiltUpAndDown;
+    case MotionProblem::kNoParallax:
+      return MissingMotion::kSlideSideways;
+    case MotionProblem::kFixedPoint:
+      return MissingMotion::kSlideInAndOut;
+    case MotionProblem::kSingleAxis:
+    case MotionProblem::kUncertain:
+      break;
+  }
+  return MissingMotion::kKeepMoving;
 }
 
 }  // namespace handeye

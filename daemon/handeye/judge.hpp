@@ -29,15 +29,21 @@ struct JudgeOptions {
   MaximumLikelihoodOptions solver;
 };
 
+/// What is judged where the likelihood's answer was only the start of a better one (one_step.hpp).
+struct JudgedAnswer {
+  Pose hand_from_eye{Pose::Identity()};
+  Matrix6d covariance{Matrix6d::Zero()};  ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
+};
+
 struct Judgement {
   MotionProblem problem{MotionProblem::kUncertain};  ///< kNone: accepted
   /// Squared Mahalanobis distance between the answers of two halves of the data (6 dof): the first
   /// and the second where they are in order of time, else every other pose. Nothing when a half is
   /// too short.
   std::optional<double> halves_chi2;
-  /// Of hand_from_eye as in MaximumLikelihoodResult, with what the halves add: where they differ by
-  /// d and chance does not explain it, d/2 is taken as one more error of the answer, for it is the
-  /// standard error of the mean of two. This, not the likelihood's, is what is accepted or refused.
+  /// Of the answer's hand_from_eye, with what the halves add: where they differ by d and chance
+  /// does not explain it, d/2 is taken as one more error of the answer, for it is the standard
+  /// error of the mean of two. This, not the answer's own, is what is accepted or refused.
   Matrix6d covariance{Matrix6d::Zero()};
   Observability observability;  ///< from that covariance
   MissingMotion missing{
@@ -52,10 +58,19 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result,
                 const JudgeOptions& options = {});
 
+/// The same of `answer`, which the same observations, and what else was seen, led to from `result`.
+/// The halves are solved by likelihood: what one half says against the other holds for either.
+Judgement judge(std::span<const HandEyeObservation> observations,
+                const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
+                const JudgeOptions& options = {});
+
 /// What the hand's motion alone says, for when there are no eye poses: kNoMotion,
 /// kInsufficientRotation, kSingleAxis, kFixedPoint or kNone. With `images_without_parallax` (the
 /// reconstruction saw rotation only) a motion that turns is called kNoParallax.
 MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const PoseNoise& noise,
                                    bool images_without_parallax = false);
+
+/// What helps against it where nothing is known of the camera's axes; kNone for kNone.
+MissingMotion remedy(MotionProblem problem);
 
 }  // namespace handeye

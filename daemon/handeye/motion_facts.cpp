@@ -46,4 +46,18 @@ MotionFacts motion_facts(std::span<const Pose> a_from_body) {
   return facts;
 }
 
+Eigen::Vector3d turned_deg(std::span<const Pose> room_from_hand, const Pose& hand_from_eye) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Pose& pose : room_from_hand) sum += pose.linear();
+  if (room_from_hand.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d mean_attitude = nearest_rotation(sum);
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (const Pose& pose : room_from_hand) {
+    const Eigen::Vector3d turn = log_so3(mean_attitude.transpose() * pose.linear());
+    squares += (hand_from_eye.linear().transpose() * turn).cwiseAbs2();
+  }
+  const Eigen::Vector3d rms = (squares / static_cast<double>(room_from_hand.size())).cwiseSqrt();
+  return rms.unaryExpr([](double angle_rad) { return deg_from_rad(angle_rad); });
+}
+
 }  // namespace handeye

@@ -18,4 +18,8 @@ struct MotionFacts {
 /// a_from_body: the body in a frame at rest, in any unit of length.
 MotionFacts motion_facts(std::span<const Pose> a_from_body);
 
+/// Rms turn about the camera's x (up and down), y (left and right) and z (roll) [deg], against the
+/// mean attitude. Zero without poses.
+Eigen::Vector3d turned_deg(std::span<const Pose> room_from_hand, const Pose& hand_from_eye);
+
 }  // namespace handeye

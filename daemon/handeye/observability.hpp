@@ -28,15 +28,20 @@ enum class MissingMotion {
   kTurnLeftAndRight,  ///< about its y
   kRoll,              ///< about its z
   kSlideInAndOut,     ///< the scale is what is uncertain
+  kSlideSideways,     ///< there is no parallax
+  kKeepMoving,        ///< of everything there was some: more of it
 };
 
-/// The motion that would tell most: sliding where `scale_to_blame`, else of the turns that show the
-/// weakest direction (those about axes across it) the one that there was least of.
-MissingMotion missing_motion(std::span<const HandEyeObservation> observations,
-                             const Pose& hand_from_eye, const Observability& weakest,
-                             bool scale_to_blame);
+/// The turn that would tell most: of those that show the weak direction of hand_from_eye (about
+/// axes across it: (R - I) times it is what is seen of it) the one that there was clearly least of.
+/// kKeepMoving where there was enough of each, kNone without observations.
+MissingMotion missing_turn(std::span<const HandEyeObservation> observations,
+                           const Pose& hand_from_eye, const Eigen::Vector3d& weak_axis_in_hand);
 
 /// "tilt the scope up and down"; empty for kNone.
 std::string_view words(MissingMotion missing);
+
+/// "tilt_up_and_down": the same for programs; empty for kNone.
+std::string_view word(MissingMotion missing);
 
 }  // namespace handeye

@@ -26,6 +26,7 @@ struct FrameRecord {
   bool keyframe{false};
   double reprojection_px{0};
   int inliers{0};
+  Matrix6d unit_covariance{Matrix6d::Zero()};  ///< as RegisteredFrame's
 };
 
 FrameRecord make_record(const TrackedFrame& frame);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -24,7 +25,7 @@ bool shows_nothing_new(ImageCondition condition) {
   return condition == ImageCondition::kDark || condition == ImageCondition::kFrozen;
 }
 
-/// Adds a part's frames, points and error to the whole.
+/// Adds a part's frames, points and error to the whole; the frames behind those it has.
 void add_part(Reconstruction part, int number, Reconstruction& whole) {
   const auto frames = static_cast<double>(whole.frames.size());
   const auto added = static_cast<double>(part.frames.size());
@@ -32,9 +33,38 @@ void add_part(Reconstruction part, int number, Reconstruction& whole) {
                                      added * part.reprojection_px * part.reprojection_px) /
                                     std::max(1.0, frames + added));
   whole.points += part.points;
+  const int first = static_cast<int>(whole.frames.size());
+  for (ScenePoint& point : part.structure) {
+    point.part = number;
+    for (ScenePoint::Observation& seen : point.observations) seen.frame += first;
+    whole.structure.push_back(std::move(point));
+  }
   for (RegisteredFrame& frame : part.frames) {
     frame.part = number;
     whole.frames.push_back(frame);
+  }
+}
+
+/// Puts the frames of all parts in order of time.
+void order_frames(Reconstruction& whole) {
+  std::vector<int> order(whole.frames.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&whole](int a, int b) {
+    return whole.frames[static_cast<std::size_t>(a)].index <
+           whole.frames[static_cast<std::size_t>(b)].index;
+  });
+  std::vector<RegisteredFrame> frames;
+  frames.reserve(order.size());
+  std::vector<int> position(order.size());
+  for (const int before : order) {
+    position[static_cast<std::size_t>(before)] = static_cast<int>(frames.size());
+    frames.push_back(whole.frames[static_cast<std::size_t>(before)]);
+  }
+  whole.frames = std::move(frames);
+  for (ScenePoint& point : whole.structure) {
+    for (ScenePoint::Observation& seen : point.observations) {
+      seen.frame = position[static_cast<std::size_t>(seen.frame)];
+    }
   }
 }
 
@@ -131,8 +161,7 @@ struct IncrementalReconstruction::Impl {
   Reconstruction result() const {
     Reconstruction result;
     for (const Segment* part : parts()) add_part(part->result(), result.parts++, result);
-    std::stable_sort(result.frames.begin(), result.frames.end(),
-                     [](const auto& a, const auto& b) { return a.index < b.index; });
+    if (result.parts > 1) order_frames(result);
     result.state = result.parts > 0 ? ReconstructionState::kTracking : prevailing_state();
     result.lens.camera = camera;
     return result;

@@ -43,8 +43,11 @@ struct RegisteredFrame {
   double reprojection_px{0};  ///< rms over its inlier observations
   int inliers{0};
   int part{0};  ///< frames of one part share scene and scale; 0 has the most frames
-  /// Of a frame that is no keyframe: of (w [rad], dt [scene units]) of eye_from_scene, R = Exp(w)
-  /// R, t = t + dt, at an image noise of 1 px, the points as they are.
+  /// Of (w [rad], dt [scene units]) of eye_from_scene, R = Exp(w) R, t = t + dt, at an image noise
+  /// of 1 px, the points as they are: inverse information of the inlier observations when the frame
+  /// was last registered, each weighed by how far its point is trusted (0.1 to 1). Of a
+  /// keyframe, which the adjustment placed, it says what its own image alone would. Zero: nothing
+  /// is known, for it was placed by its neighbours.
   Matrix6d unit_covariance{Matrix6d::Zero()};
 };
 

@@ -96,15 +96,21 @@ std::optional<Pose> pose_by_ransac(const CameraModel& camera,
   return pose;
 }
 
-/// Whether the inliers hold the pose in place: with few, or all in one corner of the image, a pose
-/// may fit them well and yet be far off.
-bool is_well_determined(const CameraModel& camera, const std::vector<PointMatch>& matches,
-                        const ResectionOptions& options, const Pose& pose) {
+/// What is known of a pose by its inliers, at an image noise of 1 px: of (w [rad], v) about the
+/// eye's own axes, p <- Exp(w) p + v of a point in the eye, where both are least entangled.
+struct PoseSpread {
+  Matrix6d covariance_about_eye;
+  double median_depth{0};
+};
+
+/// Nothing where the inliers leave the pose free to move.
+std::optional<PoseSpread> pose_spread(const CameraModel& camera,
+                                      const std::vector<PointMatch>& matches, double max_error_px,
+                                      const Pose& pose) {
   Matrix6d normal = Matrix6d::Zero();
   std::vector<double> depths;
   for (const PointMatch& match : matches) {
-    if (error_px(camera, pose, match) > options.max_reprojection_px) continue;
-    // About the eye's own axes, where rotation and translation are least entangled.
+    if (error_px(camera, pose, match) > max_error_px) continue;
     const Eigen::Vector3d point_eye = pose * match.point_scene;
     const Projection projection = project_with_derivative(camera, point_eye);
     Eigen::Matrix<double, 2, 6> by_pose;
@@ -114,13 +120,26 @@ bool is_well_determined(const CameraModel& camera, const std::vector<PointMatch>
     depths.push_back(point_eye.z());
   }
   const Eigen::LDLT<Matrix6d> factorised(normal);
-  if (factorised.info() != Eigen::Success) return false;
-  const Matrix6d covariance =
-      factorised.solve(Matrix6d::Identity()) * kMatchSigmaPx * kMatchSigmaPx;
-  const double rotation_rad = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-  const double shift = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  if (factorised.info() != Eigen::Success || !factorised.isPositive()) return std::nullopt;
+  return PoseSpread{factorised.solve(Matrix6d::Identity()), median(std::move(depths))};
+}
+
+/// Whether the inliers hold the pose in place: with few, or all in one corner of the image, a pose
+/// may fit them well and yet be far off.
+bool is_well_determined(const PoseSpread& spread) {
+  const Matrix6d& unit = spread.covariance_about_eye;
+  const double rotation_rad = kMatchSigmaPx * std::sqrt(unit.topLeftCorner<3, 3>().trace());
+  const double shift = kMatchSigmaPx * std::sqrt(unit.bottomRightCorner<3, 3>().trace());
   // Comparisons that a NaN fails.
-  return rotation_rad <= kMaxSigmaRad && shift <= kMaxSigmaOfDepth * median(std::move(depths));
+  return rotation_rad <= kMaxSigmaRad && shift <= kMaxSigmaOfDepth * spread.median_depth;
+}
+
+/// From steps about the eye's axes to those of R = Exp(w) R, t = t + dt: Exp(w) (R p + t) + v moves
+/// t by w x t + v.
+Matrix6d by_pose_steps(const Matrix6d& covariance_about_eye, const Eigen::Vector3d& translation) {
+  Matrix6d steps = Matrix6d::Identity();
+  steps.bottomLeftCorner<3, 3>() = -skew(translation);
+  return steps * covariance_about_eye * steps.transpose();
 }
 
 }  // namespace
@@ -177,7 +196,9 @@ std::optional<Resection> refine_pose(const CameraModel& camera,
   result.reprojection_px = std::sqrt(sum / result.inliers);
   // Predicted from frames that were predicted themselves: rounding would pile up.
   pose.linear() = nearest_rotation(pose.linear());
-  if (!is_well_determined(camera, matches, options, pose)) return std::nullopt;
+  const auto spread = pose_spread(camera, matches, options.max_reprojection_px, pose);
+  if (!spread || !is_well_determined(*spread)) return std::nullopt;
+  result.unit_covariance = by_pose_steps(spread->covariance_about_eye, pose.translation());
   return result;
 }
 

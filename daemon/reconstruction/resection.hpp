@@ -21,6 +21,8 @@ struct Resection {
   Pose eye_from_scene{Pose::Identity()};
   int inliers{0};
   double reprojection_px{0};  ///< rms over the inliers
+  /// As RegisteredFrame's; the inliers count by their weight.
+  Matrix6d unit_covariance{Matrix6d::Zero()};
 };
 
 /// Robust least squares on the pose alone, from a predicted one; nothing when the matches do not

@@ -74,6 +74,7 @@ class Segment {
   void thin_keyframes();
   void refresh_frames();
   void register_backwards(int count);
+  std::vector<ScenePoint> structure(const std::vector<int>& frame_of_keyframe) const;
 
   const CameraModel& camera_;
   const ReconstructionOptions& options_;

@@ -22,10 +22,12 @@ bool Segment::register_frame(FrameRecord& frame, const Pose& predicted) {
   const auto resected = resect(camera_, matches_, predicted, resection_options(options_));
   registered_ += (resected ? 1 : 0) - (frame.eye_from_scene ? 1 : 0);
   frame.eye_from_scene.reset();
+  frame.unit_covariance.setZero();
   if (!resected) return false;
   frame.eye_from_scene = resected->eye_from_scene;
   frame.inliers = resected->inliers;
   frame.reprojection_px = resected->reprojection_px;
+  frame.unit_covariance = resected->unit_covariance;
   return true;
 }
 
@@ -82,23 +84,52 @@ void Segment::register_backwards(int count) {
   }
 }
 
+/// The points, their observations counted by the frames in which the keyframes are at
+/// `frame_of_keyframe`; -1: a keyframe without one.
+std::vector<ScenePoint> Segment::structure(const std::vector<int>& frame_of_keyframe) const {
+  std::vector<ScenePoint> structure;
+  for (const Track& track : scene_.tracks) {
+    if (!track.has_point) continue;
+    ScenePoint point{.point_scene = track.point_scene};
+    point.observations.reserve(track.observations.size());
+    for (const TrackObservation& seen : track.observations) {
+      const int frame = frame_of_keyframe[static_cast<std::size_t>(seen.keyframe)];
+      if (seen.inlier && frame >= 0) point.observations.push_back({frame, seen.pixel});
+    }
+    if (!point.observations.empty()) structure.push_back(std::move(point));
+  }
+  return structure;
+}
+
 Reconstruction Segment::result() const {
   Reconstruction result;
   if (!started()) return result;
   result.state = ReconstructionState::kTracking;
   double sum = 0.0;
   double count = 0.0;
+  std::vector<int> frame_of_keyframe(scene_.keyframes.size(), -1);
+  std::size_t keyframe = 0;
   for (const FrameRecord& frame : frames_.all()) {
+    while (keyframe < scene_.keyframes.size() &&
+           scene_.keyframes[keyframe].frame_index < frame.index) {
+      ++keyframe;
+    }
     if (!frame.eye_from_scene) continue;
+    if (keyframe < scene_.keyframes.size() &&
+        scene_.keyframes[keyframe].frame_index == frame.index) {
+      frame_of_keyframe[keyframe] = static_cast<int>(result.frames.size());
+    }
     result.frames.push_back({.index = frame.index,
                              .timestamp_ns = frame.timestamp_ns,
                              .eye_from_scene = *frame.eye_from_scene,
                              .keyframe = frame.keyframe,
                              .reprojection_px = frame.reprojection_px,
-                             .inliers = frame.inliers});
+                             .inliers = frame.inliers,
+                             .unit_covariance = frame.unit_covariance});
     sum += frame.inliers * frame.reprojection_px * frame.reprojection_px;
     count += frame.inliers;
   }
+  result.structure = structure(frame_of_keyframe);
   result.points = scene_.point_count();
   result.reprojection_px = count > 0 ? std::sqrt(sum / count) : 0.0;
   return result;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 
 namespace handeye {
 namespace {
@@ -18,17 +19,56 @@ PoseBuffer::PoseBuffer(const PoseBufferOptions& options) : options_(options) {
 }
 
 void PoseBuffer::push(const HandSample& sample) {
-  if (size_ > 0 && sample.timestamp_ns <= at(size_ - 1).timestamp_ns) {
+  if (sample.doubtful_time) return;
+  const std::size_t oldest = size_ - std::min(size_, kReorderWindow);
+  std::size_t place = size_;
+  while (place > oldest && at(place - 1).timestamp_ns >= sample.timestamp_ns) --place;
+  const auto is_other_epoch = [&](std::size_t index) {
+    return at(index).clock_epoch != sample.clock_epoch;
+  };
+  const auto is_same = [&](std::size_t index) {
+    return std::abs(at(index).timestamp_ns - sample.timestamp_ns) < kSameInstant_ns;
+  };
+  const bool is_late = place < size_;
+  if (is_late && (is_other_epoch(size_ - 1) || is_other_epoch(place))) {
     ++out_of_order_;
-    return;
+  } else if ((is_late && is_same(place)) || (place > 0 && is_same(place - 1))) {
+    ++duplicates_;
+  } else if (is_late && (place == oldest || is_other_epoch(place - 1))) {
+    ++out_of_order_;
+  } else {
+    if (is_late)
+      ++reordered_;
+    else if (size_ > 0)
+      learn_period(sample.timestamp_ns - at(size_ - 1).timestamp_ns);
+    insert(place, sample);
   }
+}
+
+void PoseBuffer::insert(std::size_t index, const HandSample& sample) {
   if (size_ == ring_.size()) {
+    if (index == 0) return;  // older than all of a full ring
     first_ = (first_ + 1) % ring_.size();
     --size_;
+    --index;
     ++forgotten_;
   }
-  ring_[(first_ + size_) % ring_.size()] = sample;
+  for (std::size_t i = size_; i > index; --i) slot(i) = slot(i - 1);
+  slot(index) = sample;
   ++size_;
+}
+
+/// Follows the median of the intervals: a step of a fixed ratio up or down.
+void PoseBuffer::learn_period(std::int64_t interval_ns) {
+  constexpr std::int64_t kSteps = 50;
+  if (period_ns_ == 0) period_ns_ = std::min(interval_ns, options_.max_gap_ns);
+  const std::int64_t step_ns = period_ns_ / kSteps;
+  period_ns_ += interval_ns > period_ns_ ? step_ns : -step_ns;
+}
+
+std::int64_t PoseBuffer::bridged_gap_ns() const {
+  const std::int64_t wanted_ns = std::max(options_.accurate_gap_ns, period_ns_ + period_ns_ / 2);
+  return std::min(options_.max_gap_ns, wanted_ns);
 }
 
 void PoseBuffer::clear() {
@@ -71,7 +111,7 @@ HandLookup PoseBuffer::lookup(std::int64_t timestamp_ns) const {
     return found;
   }
   const HandSample& b = at(before + 1);
-  if (b.timestamp_ns - a.timestamp_ns > options_.max_gap_ns) {
+  if (apart(before)) {
     found.status = LookupStatus::kGap;
     return found;
   }
@@ -91,11 +131,16 @@ HandLookup PoseBuffer::lookup(std::int64_t timestamp_ns) const {
   return found;
 }
 
-/// Whether one may interpolate between this sample and the next.
-bool PoseBuffer::joined(std::size_t index) const {
+/// Whether too much time lies between this sample and the next, or a clock jumped between them.
+bool PoseBuffer::apart(std::size_t index) const {
   const HandSample& a = at(index);
   const HandSample& b = at(index + 1);
-  return a.tracked && b.tracked && b.timestamp_ns - a.timestamp_ns <= options_.max_gap_ns;
+  return a.clock_epoch != b.clock_epoch || b.timestamp_ns - a.timestamp_ns > bridged_gap_ns();
+}
+
+/// Whether one may interpolate between this sample and the next.
+bool PoseBuffer::joined(std::size_t index) const {
+  return at(index).tracked && at(index + 1).tracked && !apart(index);
 }
 
 void PoseBuffer::add_velocity(std::size_t before, HandLookup& found) const {

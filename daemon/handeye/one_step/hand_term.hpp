@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "daemon/handeye/one_step/metric_scene.hpp"
+
+namespace handeye {
+
+/// The hand that the camera implies, room_from_eye * eye_from_hand, against the tracker's, in the
+/// room: (w [rad], dt [mm]) with R_implied = Exp(w) R_tracker, t_implied = t_tracker + dt. So it is
+/// the tracker's error, in its own terms, for which its rotation and its position are independent.
+Vector6d hand_residual(const HandAtFrame& hand, const Pose& room_from_eye,
+                       const MetricState& state);
+
+/// How that changes with the steps of MetricState, to first order in the residual.
+struct HandDerivatives {
+  Matrix6d by_eye;            ///< (w, dC) of room_from_eye
+  Matrix6d by_hand_from_eye;  ///< (w, dt)
+  Vector6d by_time;
+};
+HandDerivatives hand_derivatives(const HandAtFrame& hand, const Pose& room_from_eye,
+                                 const MetricState& state);
+
+/// room_from_eye of every frame of the scene. A frame that is no keyframe goes where its part as a
+/// whole went since the start (a similarity), and from there as the keyframes beside it do, in
+/// shares: what resection saw between it and them is kept.
+std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& state);
+
+}  // namespace handeye

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/one_step/metric_covariance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "daemon/handeye/one_step/hand_correlation.hpp"
+#include "daemon/handeye/one_step/noise_estimate.hpp"
+
+namespace handeye {
+namespace {
+
+using RowByCommon = Eigen::Matrix<double, 6, kCommonUnknowns>;
+
+/// What the tracker's errors, whitened, move the common unknowns by.
+std::vector<RowByCommon> answers_to_hands(const MetricProblem& problem,
+                                          const Eigen::MatrixXd& by_common) {
+  std::vector<RowByCommon> answers;
+  answers.reserve(problem.hand_rows().size());
+  for (const HandRow& row : problem.hand_rows()) {
+    RowByCommon& answer = answers.emplace_back();
+    for (Eigen::Index i = 0; i < kCommonUnknowns; ++i) {
+      answer.col(i) = row.change(problem.scene(), by_common, i);
+    }
+  }
+  return answers;
+}
+
+/// What frames that share samples add.
+CommonMatrix shared_part(const MetricProblem& problem, const std::vector<RowByCommon>& answers) {
+  const std::vector<HandRow>& rows = problem.hand_rows();
+  const std::vector<MetricFrame>& frames = problem.scene().frames;
+  CommonMatrix sum = CommonMatrix::Zero();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::int64_t sample = frames[rows[k].frame].hand->sample;
+    for (std::size_t other = k + 1; other < rows.size(); ++other) {
+      if (frames[rows[other].frame].hand->sample > sample + 1) break;
+      const CommonMatrix product = answers[k].transpose() *
+                                   shared_covariance(problem, rows[k], rows[other]) *
+                                   answers[other];
+      sum += product + product.transpose();
+    }
+  }
+  return sum;
+}
+
+/// Noise that was given is believed within what chance explains; beyond it, by how much is it
+/// exceeded.
+double excess(const MetricProblem& problem, double freedom) {
+  if (problem.options().hand_noise == HandNoiseSource::kEstimated) return 1.0;
+  double chi2 = 0;
+  for (const HandRow& row : problem.hand_rows()) chi2 += row.residual.squaredNorm();
+  chi2 /= freedom * problem.share_of_hand_squares();
+  return chi2 > 1.0 + 3.3 * std::sqrt(2.0 / freedom) ? chi2 : 1.0;
+}
+
+/// What the priors contribute.
+CommonMatrix prior_part(const MetricProblem& problem, const CommonMatrix& base) {
+  CommonMatrix sum = CommonMatrix::Zero();
+  const auto add = [&](Eigen::Index i, double sigma) {
+    sum += base.col(i) * base.col(i).transpose() / (sigma * sigma);
+  };
+  if (problem.options().estimate_time_offset) {
+    add(kTimeInCommon, problem.options().time_offset_prior_s);
+  }
+  if (problem.lens_free()) {
+    for (Eigen::Index i = 0; i < kLensParameters; ++i) {
+      add(kLensInCommon + i, problem.options().lens->sigma[i]);
+    }
+  }
+  return sum;
+}
+
+/// What the errors along whole tracks contribute, as they were.
+CommonMatrix track_part(const MetricProblem& problem, const Eigen::MatrixXd& by_common) {
+  const MetricScene& scene = problem.scene();
+  const double variance_px2 = problem.noise().image_px * problem.noise().image_px;
+  const double errors = 2.0 * static_cast<double>(scene.observations.size()) -
+                        3.0 * static_cast<double>(scene.points());
+  const double taken = std::max(1.0, errors / image_freedom(problem));
+  return taken * taken * problem.elimination().spread_of_points(by_common / variance_px2);
+}
+
+/// The first covariance of the unknowns listed, widened in every direction to the second where that
+/// is larger; zero elsewhere.
+CommonMatrix wider(const CommonMatrix& first, const CommonMatrix& second,
+                   const std::vector<Eigen::Index>& listed) {
+  CommonMatrix result = CommonMatrix::Zero();
+  const Eigen::MatrixXd base = first(listed, listed);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      second(listed, listed).eval(), base);
+  const Eigen::MatrixXd directions = base * eigen.eigenvectors();
+  result(listed, listed) =
+      directions * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * directions.transpose();
+  return result;
+}
+
+}  // namespace
+
+MetricCovariance metric_covariance(const MetricProblem& problem, double hand_freedom) {
+  Eigen::MatrixXd by_common = Eigen::MatrixXd::Zero(problem.scene().unknowns(), kCommonUnknowns);
+  by_common.bottomRows<kCommonUnknowns>().setIdentity();
+  by_common = problem.solve(by_common);
+  const CommonMatrix base = by_common.bottomRows<kCommonUnknowns>();
+
+  const std::vector<RowByCommon> answers = answers_to_hands(problem, by_common);
+  CommonMatrix of_hands = CommonMatrix::Zero();
+  for (const RowByCommon& answer : answers) of_hands += answer.transpose() * answer;
+  const CommonMatrix of_images = base - of_hands - prior_part(problem, base);
+
+  MetricCovariance result;
+  result.correlation_inflation = correlation_beyond_samples(problem);
+  const double inflation = result.correlation_inflation * excess(problem, hand_freedom);
+  const CommonMatrix first =
+      base - of_hands + inflation * (of_hands + shared_part(problem, answers));
+  const CommonMatrix second = first - of_images + track_part(problem, by_common);
+  std::vector<Eigen::Index> estimated;
+  for (Eigen::Index i = 0; i < kCommonUnknowns; ++i) {
+    if (problem.estimates(i)) estimated.push_back(i);
+  }
+  result.covariance = wider(first, second, estimated);
+  return result;
+}
+
+}  // namespace handeye

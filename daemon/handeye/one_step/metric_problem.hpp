@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "daemon/handeye/one_step/hand_equations.hpp"
+#include "daemon/handeye/one_step/huber_norm.hpp"
+#include "daemon/handeye/one_step/point_elimination.hpp"
+
+namespace handeye {
+
+/// The least-squares problem of `one_step` at a given noise, and its minimiser: Gauss-Newton with
+/// the points eliminated, damped where a step fails (Levenberg, Marquardt). Near the minimum the
+/// images' equations are linearised once and only the gradient is computed anew: that alone says
+/// where the minimum is.
+class MetricProblem {
+ public:
+  MetricProblem(const MetricScene& scene, const OneStepOptions& options);
+
+  /// Which frames' hands count: one a frame of the scene.
+  void keep(std::vector<bool> kept) { hands_.kept = std::move(kept); }
+  /// From where it stands; false where the equations determine nothing.
+  bool minimise(const MetricNoise& noise);
+  /// Linearises everything where it stands, for `solve`; false as above.
+  bool linearise_anew();
+
+  const MetricScene& scene() const { return scene_; }
+  const OneStepOptions& options() const { return options_; }
+  const MetricState& state() const { return state_; }
+  const MetricNoise& noise() const { return noise_; }
+  const std::vector<bool>& kept() const { return hands_.kept; }
+  const HandSelection& hands() const { return hands_; }
+  const std::vector<Pose>& eyes() const { return here_.eyes; }
+  const std::vector<HandRow>& hand_rows() const { return hand_rows_; }
+  const PointElimination& elimination() const { return elimination_; }
+  double image_squares() const { return here_.rows.squares; }  ///< [px^2]
+  /// Likewise weighted by the loss, and made good for what the loss takes from inliers.
+  double robust_image_squares() const;
+  /// What the loss leaves of the squares of tracker residuals that are inliers.
+  double share_of_hand_squares() const { return huber_of_hand_.share_of_squares; }
+  bool lens_free() const { return options_.lens.has_value(); }
+  /// Of the common unknowns; else it keeps its value.
+  bool estimates(Eigen::Index common) const;
+  int iterations() const { return iterations_; }
+
+  /// H^-1 right: H is the information of keyframes and common unknowns as last linearised.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const { return factor_.solve(right); }
+
+ private:
+  /// A place that is tried, or taken.
+  struct Place {
+    ImageRows rows;
+    std::vector<Pose> eyes;
+    double cost{0};
+  };
+
+  bool evaluate(const MetricState& state, Place& place) const;
+  double prior_cost(const MetricState& state) const;
+  void add_priors(Eigen::VectorXd& gradient) const;
+  void hold(Eigen::VectorXd& gradient) const;
+  bool factorise(double damping);
+  void eliminate_points();
+  void set_noise(const MetricNoise& noise);
+
+  const MetricScene& scene_;
+  OneStepOptions options_;
+  MetricState state_;
+  MetricNoise noise_;
+  HandSelection hands_;
+  HuberNorm huber_of_image_, huber_of_hand_;
+  PointElimination elimination_;
+  bool eliminated_{false};      ///< at a place that was taken
+  bool at_elimination_{false};  ///< and has not been left
+  Place here_, next_;
+  std::vector<HandRow> hand_rows_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  int iterations_{0};
+};
+
+}  // namespace handeye

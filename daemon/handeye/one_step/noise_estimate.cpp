@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/handeye/one_step/noise_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "daemon/geometry/median.hpp"
+#include "daemon/handeye/one_step/hand_term.hpp"
+
+namespace handeye {
+namespace {
+
+constexpr int kProbes = 16;
+/// Features err together by about this much, however small the residuals: interpolation, windows
+/// seen aslant, a lens that is not quite of the model's kind.
+constexpr double kLeastImageNoise_px = 0.1;
+/// No tracker is better than that.
+constexpr double kLeastRotation_rad = 1e-5;
+constexpr double kLeastTranslation_mm = 2e-3;
+
+double square(double x) {
+  return x * x;
+}
+
+double standard_deviation(double variance, double least) {
+  return std::sqrt(std::max(variance, square(least)));
+}
+
+/// One kind of error, rotation or translation, over all hands.
+struct Component {
+  double squares{0};   ///< of residuals, without what is not the tracker's; weighted
+  double expected{0};  ///< for a sample's variance of 1; weighted alike
+
+  /// `share`: of three axes, by which interpolation lowers the variance; `other`: variance that is
+  /// not the tracker's; `taken`: that the solution took up.
+  void add(double residual_square, double share, double other, double taken, double variance) {
+    const double weight = 1.0 / square(share * variance + other / 3.0);
+    squares += weight * (residual_square - other + taken);
+    expected += weight * 3.0 * share;
+  }
+};
+
+}  // namespace
+
+Leverage hand_leverage(const MetricProblem& problem) {
+  const MetricScene& scene = problem.scene();
+  const std::vector<HandRow>& rows = problem.hand_rows();
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  std::mt19937 generator(1);
+  Eigen::MatrixXd probes(6 * n, kProbes);
+  for (Eigen::Index i = 0; i < probes.size(); ++i) {
+    probes(i) = (generator() & 1U) != 0 ? 1.0 : -1.0;
+  }
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(scene.unknowns(), kProbes);
+  for (int probe = 0; probe < kProbes; ++probe) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(scene.unknowns());
+    for (Eigen::Index k = 0; k < n; ++k) {
+      rows[static_cast<std::size_t>(k)].add_gradient(scene, probes.col(probe).segment<6>(6 * k),
+                                                     sum);
+    }
+    right.col(probe) = sum;
+  }
+  const Eigen::MatrixXd answers = problem.solve(right);
+  Leverage leverage;
+  leverage.variances.assign(rows.size(), Vector6d::Zero());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const HandRow& row = rows[static_cast<std::size_t>(k)];
+    const auto root = problem.hands().weights.whitenings[row.frame].triangularView<Eigen::Lower>();
+    for (int probe = 0; probe < kProbes; ++probe) {
+      const Vector6d z = probes.col(probe).segment<6>(6 * k);
+      const Vector6d pz = row.change(scene, answers, probe);
+      leverage.whitened += z.dot(pz) / kProbes;
+      leverage.variances[static_cast<std::size_t>(k)] +=
+          root.solve(z).cwiseProduct(root.solve(pz)) / kProbes;
+    }
+  }
+  return leverage;
+}
+
+MetricNoise noise_at_start(const MetricScene& scene, const OneStepOptions& options) {
+  MetricNoise noise{options.image_noise_px.value_or(0), options.hand_rotation_sigma_rad,
+                    options.hand_translation_sigma_mm};
+  if (!options.image_noise_px) {
+    const double n = 2.0 * static_cast<double>(scene.observations.size());
+    const double freedom = std::max(1.0, n - 3.0 * static_cast<double>(scene.points()) -
+                                             6.0 * static_cast<double>(scene.keyframes()));
+    std::vector<double> norms = error_norms(scene, scene.start);
+    noise.image_px = standard_deviation(square(median(norms)) / median_of_squares(2) * n / freedom,
+                                        kLeastImageNoise_px);
+  }
+  if (options.hand_noise != HandNoiseSource::kEstimated) return noise;
+  const std::vector<Pose> eyes = eyes_of_frames(scene, scene.start);
+  std::vector<double> rotations;
+  std::vector<double> translations;
+  for (std::size_t k = 0; k < scene.frames.size(); ++k) {
+    if (!scene.frames[k].hand) continue;
+    const HandAtFrame& hand = *scene.frames[k].hand;
+    const Vector6d residual = hand_residual(hand, eyes[k], scene.start);
+    const double share = interpolated_variance(hand);
+    rotations.push_back(residual.head<3>().squaredNorm() / share);
+    translations.push_back(residual.tail<3>().squaredNorm() / share);
+  }
+  const double usual = median_of_squares(3);
+  noise.hand_rotation_rad = standard_deviation(median(rotations) / usual, kLeastRotation_rad);
+  noise.hand_translation_mm =
+      standard_deviation(median(translations) / usual, kLeastTranslation_mm);
+  return noise;
+}
+
+double image_freedom(const MetricProblem& problem) {
+  const MetricScene& scene = problem.scene();
+  const double unknowns = 3.0 * static_cast<double>(scene.points()) +
+                          6.0 * static_cast<double>(scene.keyframes()) +
+                          (problem.lens_free() ? kLensParameters : 0);
+  return std::max(1.0, 2.0 * static_cast<double>(scene.observations.size()) - unknowns);
+}
+
+MetricNoise estimated_noise(const MetricProblem& problem) {
+  const OneStepOptions& options = problem.options();
+  MetricNoise noise = problem.noise();
+  if (!options.image_noise_px) {
+    noise.image_px = standard_deviation(problem.robust_image_squares() / image_freedom(problem),
+                                        kLeastImageNoise_px);
+  }
+  if (options.hand_noise != HandNoiseSource::kEstimated) return noise;
+  const MetricScene& scene = problem.scene();
+  const Leverage leverage = hand_leverage(problem);
+  const std::vector<HandRow>& rows = problem.hand_rows();
+  Component rotation;
+  Component translation;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const MetricFrame& frame = scene.frames[rows[i].frame];
+    const Pose& eye = problem.eyes()[rows[i].frame];
+    const Vector6d residual = hand_residual(*frame.hand, eye, problem.state());
+    const double weight = rows[i].weight / problem.share_of_hand_squares();
+    const Vector6d other = square(problem.noise().image_px) *
+                           eye_noise_at_hand(frame, eye, problem.state()).diagonal();
+    const double share = interpolated_variance(*frame.hand);
+    const Vector6d& taken = leverage.variances[i];
+    rotation.add(weight * residual.head<3>().squaredNorm(), share, other.head<3>().sum(),
+                 taken.head<3>().sum(), square(problem.noise().hand_rotation_rad));
+    translation.add(weight * residual.tail<3>().squaredNorm(), share, other.tail<3>().sum(),
+                    taken.tail<3>().sum(), square(problem.noise().hand_translation_mm));
+  }
+  noise.hand_rotation_rad =
+      standard_deviation(rotation.squares / rotation.expected, kLeastRotation_rad);
+  noise.hand_translation_mm =
+      standard_deviation(translation.squares / translation.expected, kLeastTranslation_mm);
+  return noise;
+}
+
+}  // namespace handeye

@@ -225,11 +225,15 @@ status_t Service::status_message() {
   }
   status.tracked_bodies = tracker_.tracked_bodies();
   write_session(session_, status);
-  status.sigma_rotation_deg = -1;
-  status.sigma_translation_mm = -1;
+  write_no_progress(status);
   if (session_.state() == SessionState::kCollecting || session_.state() == SessionState::kSolving) {
-    write_progress(solver_.progress(), *session_.current(),
-                   seconds_between(collecting_since_ns_, now_ns), status);
+    const StartOptions& start = *session_.current();
+    write_progress(solver_.progress(),
+                   {.wanted = start.wanted,
+                    .min_duration_s = config_.calibration.min_duration_s,
+                    .max_duration_s = start.max_duration_s,
+                    .elapsed_s = seconds_between(collecting_since_ns_, now_ns)},
+                   status);
     status.features_tracked = vision_.features_tracked();
     status.frames_collected = static_cast<std::int32_t>(vision_.frames_collected());
   }

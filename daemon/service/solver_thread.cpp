@@ -2,9 +2,9 @@
 #include "daemon/service/solver_thread.hpp"
 
 #include <algorithm>
+#include <memory>
 
-#include <spdlog/spdlog.h>
-
+#include "daemon/session/steady_guidance.hpp"
 #include "daemon/session/stopwatch.hpp"
 
 namespace handeye {
@@ -13,16 +13,18 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kWait{50};
-constexpr double kAssessEvery_ms = 1000;
-/// Meanwhile nobody takes the frames in, or hears a request: not more than a third of the time.
-constexpr double kBetweenAttempts_ms = 3000;
+constexpr int kBackgroundNiceness = 5;
+// Answers in the background may take this share of one processor.
+constexpr double kBetweenProvisionals_ms = 500;
+constexpr double kBetweenProvisionals_solves = 4;
+constexpr double kBetweenAttempts_ms = 2000;
 constexpr double kBetweenAttempts_solves = 2;
-// The estimate on the way lacks the global adjustment; ask for some margin before trying that.
-constexpr double kAttemptMargin = 0.9;
+// The provisional answer lacks the global adjustment, and half of the frames.
+constexpr double kAttemptMargin = 1.1;
 
 /// What a lens that is being found adds only an attempt can tell.
-bool is_promising(const CalibrationProgress& progress, const WantedSigma& wanted) {
-  const auto& sigma = progress.sigma_beside_lens;
+bool is_promising(const Provisional& answer, const WantedSigma& wanted) {
+  const auto& sigma = answer.sigma_beside_lens;
   return sigma && sigma->rotation_deg <= kAttemptMargin * wanted.rotation_deg &&
          sigma->translation_mm <= kAttemptMargin * wanted.translation_mm;
 }
@@ -35,21 +37,40 @@ CalibrationResult cancelled(std::int64_t request_id) {
   return result;
 }
 
+using CalibrationPointer = std::unique_ptr<Calibration>;
+
+/// The global adjustment needs the calibration itself: it goes along and comes back.
+struct Adjusted {
+  CalibrationPointer calibration;
+  CalibrationSnapshot snapshot;
+};
+
 }  // namespace
 
 /// A calibration while it collects.
 struct SolverThread::Running {
-  Calibration calibration;
+  StartOptions start;
   std::uint64_t number;
-  Stopwatch since_start;
-  double next_assessment_ms{kAssessEvery_ms};
-  double next_attempt_ms;
-  double tracking_ms{0};
   std::uint64_t drops_before;
+  CalibrationPointer calibration;  ///< null: away for its global adjustment; frames wait
+  Stopwatch since_start;
+  double tracking_ms{0};
   bool finish_asked{false};
   bool cancel_asked{false};
 
-  double max_duration_ms() const { return 1000 * calibration.options().start.max_duration_s; }
+  std::future<Provisional> provisional;
+  double provisional_begun_ms{0};
+  double next_provisional_ms{kBetweenProvisionals_ms};
+  Provisional last_provisional;
+  SteadyGuidance guidance{SteadyGuidanceOptions{}};
+
+  std::future<Adjusted> adjusting;         ///< first half of an attempt
+  std::future<SolvedCalibration> attempt;  ///< second half
+  double attempt_begun_ms{0};
+  double next_attempt_ms{0};
+
+  double elapsed_ms() const { return since_start.elapsed_ms(); }
+  bool time_is_up() const { return elapsed_ms() > 1000 * start.max_duration_s; }
 };
 
 SolverThread::SolverThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
@@ -58,7 +79,8 @@ SolverThread::SolverThread(BoundedQueue<HandSample>& hand_samples, Exchange<Trac
       tracked_(tracked),
       options_(options),
       commands_(64),
-      events_(64) {}
+      events_(64),
+      attempts_(kBackgroundNiceness) {}
 
 void SolverThread::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -79,35 +101,44 @@ void SolverThread::run(const std::stop_token& stop) {
 }
 
 void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) {
-  set_progress({});
-  Running running{.calibration = Calibration({.start = begin.start,
-                                              .camera = options_.camera,
-                                              .intrinsics = options_.intrinsics,
-                                              .noise = options_.noise,
-                                              .reconstruction = {}}),
+  const CalibrationOptions options{.start = begin.start,
+                                   .camera = options_.camera,
+                                   .intrinsics = options_.intrinsics,
+                                   .noise = options_.noise,
+                                   .reconstruction = {}};
+  Running running{.start = begin.start,
                   .number = begin.calibration,
-                  .since_start = {},
-                  .next_attempt_ms = 1000 * options_.min_duration_s,
-                  .drops_before = tracked_.dropped()};
+                  .drops_before = tracked_.dropped(),
+                  .calibration = std::make_unique<Calibration>(options),
+                  .next_attempt_ms = 1000 * options_.min_duration_s};
+  tell_progress(running);
   while (!stop.stop_requested()) {
     take_in(running, kWait);
     hear(running);
     if (running.cancel_asked) return post(cancelled(begin.start.request_id));
-    const bool time_is_up = running.since_start.elapsed_ms() > running.max_duration_ms();
-    if (running.finish_asked || time_is_up) return conclude(running, stop);
-    if (running.since_start.elapsed_ms() > running.next_assessment_ms && assess(running)) return;
+    if (end_background_work(running)) return;
+    if (!running.calibration) continue;
+    if (running.finish_asked || running.time_is_up()) return conclude(running, stop);
+    begin_background_work(running);
+    tell_progress(running);
   }
 }
 
-void SolverThread::take_in(Running& running, milliseconds wait) {
+/// Everything of the hand that is there and one frame. False: none came.
+bool SolverThread::take_in(Running& running, milliseconds wait) {
+  if (!running.calibration) {
+    running.adjusting.wait_for(wait);
+    return false;
+  }
   TrackedItem* item = tracked_.take(wait);
-  while (const auto sample = hand_samples_.pop()) running.calibration.add_hand(*sample);
-  if (item == nullptr) return;
+  while (const auto sample = hand_samples_.pop()) running.calibration->add_hand(*sample);
+  if (item == nullptr) return false;
   if (item->calibration == running.number) {
-    running.calibration.add_frame(item->frame);
+    running.calibration->add_frame(item->frame);
     running.tracking_ms = item->tracking_ms;
   }
   tracked_.release(item);
+  return true;
 }
 
 /// What was tracked before now, not what keeps coming.
@@ -127,53 +158,105 @@ void SolverThread::hear(Running& running) {
   }
 }
 
-/// Tells how far we are; true when that was far enough and the result has been posted.
-bool SolverThread::assess(Running& running) {
-  const CalibrationProgress progress = running.calibration.progress();
-  set_progress(progress);
-  running.next_assessment_ms = running.since_start.elapsed_ms() + kAssessEvery_ms;
-  if (running.since_start.elapsed_ms() < running.next_attempt_ms ||
-      !is_promising(progress, running.calibration.options().start.wanted)) {
-    return false;
+void SolverThread::tell_progress(Running& running) {
+  CalibrationProgress progress{.situation = running.calibration->situation(),
+                               .provisional = running.last_provisional,
+                               .guidance = {}};
+  progress.guidance = running.guidance.show(guidance_for(progress.situation, progress.provisional),
+                                            1e-3 * running.elapsed_ms());
+  const std::scoped_lock lock(progress_mutex_);
+  progress_ = std::move(progress);
+}
+
+/// An attempt at the final answer where it may be good enough, else another provisional one.
+void SolverThread::begin_background_work(Running& running) {
+  if (attempts_.busy()) return;
+  const double now_ms = running.elapsed_ms();
+  if (now_ms > running.next_attempt_ms &&
+      is_promising(running.last_provisional, running.start.wanted)) {
+    running.attempt_begun_ms = now_ms;
+    running.adjusting = attempts_.run([calibration = std::move(running.calibration)]() mutable {
+      CalibrationSnapshot snapshot = calibration->snapshot();
+      return Adjusted{std::move(calibration), std::move(snapshot)};
+    });
+  } else if (now_ms > running.next_provisional_ms && !running.provisional.valid()) {
+    running.provisional_begun_ms = now_ms;
+    running.provisional =
+        attempts_.run([outline = running.calibration->outline()] { return provisional(outline); });
   }
-  const Stopwatch attempt;
-  CalibrationResult result = solve(running);
+}
+
+/// Fetches what has been solved. True: a final answer, and the result has been posted.
+bool SolverThread::end_background_work(Running& running) {
+  if (is_ready(running.provisional)) end_provisional(running);
+  if (is_ready(running.adjusting)) {
+    Adjusted adjusted = running.adjusting.get();
+    running.calibration = std::move(adjusted.calibration);
+    // The thread may not have noticed yet that it has nothing to do.
+    running.attempt = attempts_.run(
+        [snapshot = std::move(adjusted.snapshot)] { return handeye::solve(snapshot); });
+  }
+  return is_ready(running.attempt) && end_attempt(running);
+}
+
+void SolverThread::end_provisional(Running& running) {
+  running.last_provisional = running.provisional.get();
+  const double now_ms = running.elapsed_ms();
+  running.next_provisional_ms =
+      now_ms + std::max(kBetweenProvisionals_ms,
+                        kBetweenProvisionals_solves * (now_ms - running.provisional_begun_ms));
+}
+
+/// Who asked to finish wants everything so far in the answer, which the attempt has not.
+bool SolverThread::end_attempt(Running& running) {
+  SolvedCalibration outcome = running.attempt.get();
+  running.calibration->learn(outcome);
+  const double now_ms = running.elapsed_ms();
   running.next_attempt_ms =
-      running.since_start.elapsed_ms() +
-      std::max(kBetweenAttempts_ms, kBetweenAttempts_solves * attempt.elapsed_ms());
-  hear(running);
-  if (running.cancel_asked || result.verdict != Verdict::kAccepted) return false;
-  post(std::move(result));
+      now_ms +
+      std::max(kBetweenAttempts_ms, kBetweenAttempts_solves * (now_ms - running.attempt_begun_ms));
+  if (running.finish_asked || outcome.result.verdict != Verdict::kAccepted) return false;
+  post_result(running, std::move(outcome.result));
   return true;
 }
 
 void SolverThread::conclude(Running& running, const std::stop_token& stop) {
   post(Solving{});
   take_rest(running, stop);
-  if (stop.stop_requested()) return;
-  std::optional<CalibrationResult> result;
-  if (!running.cancel_asked) result = solve(running);
-  hear(running);
-  const std::int64_t request_id = running.calibration.options().start.request_id;
-  post(running.cancel_asked ? cancelled(request_id) : std::move(*result));
+  std::optional<SolvedCalibration> outcome = solve_finally(running, stop);
+  if (running.cancel_asked) return post(cancelled(running.start.request_id));
+  if (outcome) post_result(running, std::move(outcome->result));
 }
 
-CalibrationResult SolverThread::solve(Running& running) {
-  CalibrationResult result = running.calibration.solve();
+/// Nothing: cancelled, or stopped.
+std::optional<SolvedCalibration> SolverThread::solve_finally(Running& running,
+                                                             const std::stop_token& stop) {
+  std::future<SolvedCalibration> answer;
+  while (!running.cancel_asked && !stop.stop_requested()) {
+    if (answer.valid()) {
+      if (answer.wait_for(kWait) == std::future_status::ready) return answer.get();
+    } else if (!final_answer_.busy()) {
+      answer = final_answer_.run([calibration = std::move(running.calibration)] {
+        return handeye::solve(calibration->snapshot());
+      });
+    } else {
+      std::this_thread::sleep_for(kWait);
+    }
+    hear(running);
+  }
+  return std::nullopt;
+}
+
+void SolverThread::post_result(const Running& running, CalibrationResult result) {
   result.timings_ms.tracking = running.tracking_ms;
-  result.timings_ms.total = running.since_start.elapsed_ms();
+  result.timings_ms.total = running.elapsed_ms();
   result.frames.dropped = static_cast<std::int64_t>(tracked_.dropped() - running.drops_before);
-  return result;
+  post(std::move(result));
 }
 
 void SolverThread::post(Event event) {
   events_.push(std::move(event));
   wake_up_.signal();
-}
-
-void SolverThread::set_progress(CalibrationProgress progress) {
-  const std::scoped_lock lock(progress_mutex_);
-  progress_ = std::move(progress);
 }
 
 CalibrationProgress SolverThread::progress() const {

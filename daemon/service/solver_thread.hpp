@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <variant>
 
+#include "daemon/service/background_thread.hpp"
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/exchange.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/service/wake_up.hpp"
 #include "daemon/session/calibration.hpp"
+#include "daemon/session/progress.hpp"
 
 namespace handeye {
 
-/// Runs the calibrations: takes samples of the hand and tracked frames, watches sigma and the
-/// clock, solves. Everything slow happens here, and nothing else does.
+/// Runs the calibrations: takes samples of the hand and tracked frames, hears requests, watches
+/// sigma and the clock. What is slow, provisional answers, attempts at a final one and the final
+/// one itself, is solved on threads behind it, from snapshots: frames are taken in meanwhile, and a
+/// cancel or finish is acted on within some ten milliseconds whatever is being solved.
 class SolverThread {
  public:
   struct Options {
@@ -56,14 +58,18 @@ class SolverThread {
 
   void run(const std::stop_token& stop);
   void calibrate(const Command& begin, const std::stop_token& stop);
-  void take_in(Running& running, std::chrono::milliseconds wait);
+  bool take_in(Running& running, std::chrono::milliseconds wait);
   void take_rest(Running& running, const std::stop_token& stop);
   void hear(Running& running);
-  bool assess(Running& running);
+  void tell_progress(Running& running);
+  void begin_background_work(Running& running);
+  bool end_background_work(Running& running);
+  void end_provisional(Running& running);
+  bool end_attempt(Running& running);
   void conclude(Running& running, const std::stop_token& stop);
-  CalibrationResult solve(Running& running);
+  std::optional<SolvedCalibration> solve_finally(Running& running, const std::stop_token& stop);
+  void post_result(const Running& running, CalibrationResult result);
   void post(Event event);
-  void set_progress(CalibrationProgress progress);
 
   BoundedQueue<HandSample>& hand_samples_;
   Exchange<TrackedItem>& tracked_;
@@ -73,6 +79,8 @@ class SolverThread {
   WakeUp wake_up_;
   mutable std::mutex progress_mutex_;
   CalibrationProgress progress_;
+  BackgroundThread attempts_;
+  BackgroundThread final_answer_;  ///< does not wait for what the other one is at
   std::jthread thread_;
 };
 

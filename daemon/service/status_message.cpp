@@ -9,6 +9,11 @@ namespace {
 
 constexpr std::size_t kAcksInStatus = 16;
 
+static_assert(static_cast<int>(GuideCode::kHandHidden) == status_t::GUIDE_HAND_HIDDEN);
+static_assert(static_cast<int>(GuideCode::kWholeBoard) == status_t::GUIDE_WHOLE_BOARD);
+static_assert(static_cast<int>(GuideCode::kTiltUpAndDown) == status_t::GUIDE_TILT_UP_AND_DOWN);
+static_assert(static_cast<int>(GuideCode::kKeepMoving) == status_t::GUIDE_KEEP_MOVING);
+
 std::int32_t state_code(SessionState state) {
   switch (state) {
     case SessionState::kIdle:
@@ -59,11 +64,36 @@ std::optional<Action> action_of(std::int32_t code) {
 }
 
 /// How near sigma is to what is wanted: it falls roughly with the square root of time.
-double sigma_progress(const CalibrationProgress& progress, const WantedSigma& wanted) {
-  if (!progress.sigma_rotation_deg || !progress.sigma_translation_mm) return 0;
-  const double ratio = std::min(wanted.rotation_deg / *progress.sigma_rotation_deg,
-                                wanted.translation_mm / *progress.sigma_translation_mm);
-  return std::clamp(ratio * ratio, 0.0, 1.0);
+double sigma_progress(const Provisional& answer, const WantedSigma& wanted) {
+  if (!answer.sigma) return 0;
+  const double ratio = std::min(wanted.rotation_deg / answer.sigma->rotation_deg,
+                                wanted.translation_mm / answer.sigma->translation_mm);
+  return ratio * ratio;
+}
+
+/// Wanted sigma or time limit, whichever is nearer. Before `min_duration_s` no sigma ends anything,
+/// and a sigma that is small enough is still to be confirmed by a whole answer.
+double overall_progress(const Provisional& answer, const ProgressTerms& terms) {
+  constexpr double kUnconfirmed = 0.99;
+  const double by_sigma = std::min({sigma_progress(answer, terms.wanted), kUnconfirmed,
+                                    terms.elapsed_s / std::max(terms.min_duration_s, 1e-3)});
+  return std::clamp(std::max(by_sigma, terms.elapsed_s / terms.max_duration_s), 0.0, 1.0);
+}
+
+void write_provisional(const Provisional& answer, status_t& status) {
+  status.sigma_rotation_deg = answer.sigma ? answer.sigma->rotation_deg : -1;
+  status.sigma_translation_mm = answer.sigma ? answer.sigma->translation_mm : -1;
+  status.time_offset_s = answer.time_offset_s;
+  status.time_offset_sigma_s = answer.time_offset_sigma_s.value_or(-1);
+  status.time_offset_confidence = answer.time_offset_confidence;
+  std::copy_n(answer.turned_deg.data(), 3, status.turned_deg);
+  if (!answer.solution) return;
+  status.has_estimate = true;
+  const Pose& hand_from_eye = answer.solution->hand_from_eye;
+  const Eigen::Quaterniond q(hand_from_eye.linear());
+  const double q_wxyz[4]{q.w(), q.x(), q.y(), q.z()};
+  std::copy_n(q_wxyz, 4, status.q_wxyz);
+  std::copy_n(hand_from_eye.translation().data(), 3, status.t_mm);
 }
 
 /// What a START is to look at. False, and why: the request names no eye that there is, or no board
@@ -131,17 +161,23 @@ void write_session(const Session& session, status_t& status) {
   status.num_acks = static_cast<std::int32_t>(status.ack_request_id.size());
 }
 
-void write_progress(const CalibrationProgress& progress, const StartOptions& start,
-                    double elapsed_s, status_t& status) {
-  status.elapsed_s = elapsed_s;
-  status.progress = std::clamp(
-      std::max(sigma_progress(progress, start.wanted), elapsed_s / start.max_duration_s), 0.0, 1.0);
-  status.sigma_rotation_deg = progress.sigma_rotation_deg.value_or(-1);
-  status.sigma_translation_mm = progress.sigma_translation_mm.value_or(-1);
-  status.keyframes = progress.keyframes;
-  status.rotation_coverage_deg = progress.rotation_coverage_deg;
-  status.translation_coverage_mm = progress.translation_coverage_mm;
-  status.guidance = progress.guidance;
+void write_no_progress(status_t& status) {
+  status.sigma_rotation_deg = -1;
+  status.sigma_translation_mm = -1;
+  status.time_offset_sigma_s = -1;
+}
+
+void write_progress(const CalibrationProgress& progress, const ProgressTerms& terms,
+                    status_t& status) {
+  status.elapsed_s = terms.elapsed_s;
+  status.progress = overall_progress(progress.provisional, terms);
+  status.keyframes = progress.situation.keyframes;
+  status.rotation_coverage_deg = progress.situation.rotation_coverage_deg;
+  status.translation_coverage_mm = progress.situation.translation_coverage_mm;
+  // The enumeration has the wire's numbers, in its order.
+  status.guidance_code = static_cast<std::int32_t>(progress.guidance.code);
+  status.guidance = progress.guidance.words;
+  write_provisional(progress.provisional, status);
 }
 
 std::string_view picture_text(ImageCondition condition) {

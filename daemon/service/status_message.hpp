@@ -7,7 +7,7 @@
 #include <handeye/request_t.hpp>
 #include <handeye/status_t.hpp>
 
-#include "daemon/session/calibration.hpp"
+#include "daemon/session/progress.hpp"
 #include "daemon/session/session.hpp"
 #include "daemon/tracking/image_condition.hpp"
 
@@ -20,9 +20,21 @@ std::optional<Request> read_request(const request_t& message, std::string& probl
 /// Writes the session's part of STATUS: state, request, acknowledgements.
 void write_session(const Session& session, status_t& status);
 
-/// Writes the running calibration's part: progress towards the wanted sigma or the time limit.
-void write_progress(const CalibrationProgress& progress, const StartOptions& start,
-                    double elapsed_s, status_t& status);
+/// What a running calibration ends at, and where it is.
+struct ProgressTerms {
+  WantedSigma wanted;
+  double min_duration_s{8};
+  double max_duration_s{30};
+  double elapsed_s{0};
+};
+
+/// Writes the running calibration's part: progress towards the wanted sigma or the time limit, the
+/// answer as it stands, what to do next.
+void write_progress(const CalibrationProgress& progress, const ProgressTerms& terms,
+                    status_t& status);
+
+/// Writes that none is running: nothing is known.
+void write_no_progress(status_t& status);
 
 /// What ails the camera's picture, in words: "the picture is dark". Empty for kGood.
 std::string_view picture_text(ImageCondition condition);

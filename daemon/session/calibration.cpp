@@ -2,23 +2,14 @@
 #include "daemon/session/calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "daemon/session/guidance.hpp"
-#include "daemon/session/lens_sensitivity.hpp"
-#include "daemon/session/method_comparison.hpp"
 #include "daemon/session/stopwatch.hpp"
-#include "daemon/session/verdict.hpp"
 
 namespace handeye {
 namespace {
 
-// On the way an estimate is only for orientation; so many frames give it fast enough.
+// On the way an answer is only for orientation; so many frames give it fast enough.
 constexpr std::size_t kFramesOnTheWay = 150;
-
-constexpr std::string_view kStoodStillAdvice =
-    "The scope stood still in every image, so the time offset between camera and tracker could not "
-    "be found and was not needed: it was taken to be 0.";
 
 std::vector<RegisteredFrame> thinned(const std::vector<RegisteredFrame>& frames,
                                      std::size_t at_most) {
@@ -29,28 +20,6 @@ std::vector<RegisteredFrame> thinned(const std::vector<RegisteredFrame>& frames,
   return kept;
 }
 
-/// Every method's answer to the same poses; the last is the one that this calibration gives.
-std::vector<MethodResult> methods_of(const Estimate& estimate, const PoseNoise& noise) {
-  const std::vector<PosePair> pairs = poses_of_answer(estimate);
-  const std::span<const Method> all = methods(estimate.scale);
-  std::vector<MethodResult> results =
-      compare_methods(all.first(all.size() - 1), pairs, noise, estimate.scale);
-  MethodResult answer{.name = std::string(all.back().name)};
-  if (estimate.likelihood) {
-    answer.solution = estimate.likelihood->solution;
-    answer.residuals = seed_residuals(pairs, *answer.solution);
-    answer.time_ms = estimate.time_ms;
-  }
-  results.push_back(std::move(answer));
-  return results;
-}
-
-void write_covariance(const Matrix6d& covariance, CalibrationResult& result) {
-  result.covariance = covariance;
-  result.sigma_rotation_deg = sigma_rotation_deg(covariance);
-  result.sigma_translation_mm = sigma_translation_mm(covariance);
-}
-
 /// A lens that was not given is the answer's, with what it is worth.
 void write_lens(const Lens& lens, CalibrationResult& result) {
   if (lens.mode == IntrinsicsMode::kFixed) return;
@@ -59,17 +28,11 @@ void write_lens(const Lens& lens, CalibrationResult& result) {
   result.lens = LensQuality{lens.sigma, lens.observable};
 }
 
-void write_estimate(const Estimate& estimate, const PoseNoise& noise, CalibrationResult& result) {
-  result.methods = methods_of(estimate, noise);
-  if (estimate.correlation) {
-    result.time_offset_s = estimate.time_offset_s;
-    result.time_offset_sigma_s = estimate.time_offset_sigma_s;
-  }
-  if (!estimate.likelihood) return;
-  result.has_estimate = true;
-  result.solution = estimate.likelihood->solution;
-  write_covariance(estimate.likelihood->covariance, result);
-  result.residuals = result.methods.back().residuals;
+/// The samples that are there, without the room for more.
+PoseBuffer trimmed(const PoseBuffer& hand) {
+  PoseBuffer copy({.capacity = std::max<std::size_t>(hand.size(), 1)});
+  for (std::size_t i = 0; i < hand.size(); ++i) copy.push(hand.at(i));
+  return copy;
 }
 
 }  // namespace
@@ -79,7 +42,7 @@ Calibration::Calibration(const CalibrationOptions& options)
       eye_(make_eye_source(options.start.board, options.camera, options.intrinsics,
                            options.reconstruction)),
       hand_({.capacity = options.hand_capacity}) {
-  if (is_lens_given()) lens_covariance_ = Matrix6d::Zero();
+  if (options_.is_lens_given()) lens_covariance_ = Matrix6d::Zero();
 }
 
 void Calibration::add_hand(const HandSample& sample) {
@@ -99,71 +62,46 @@ void Calibration::add_frame(const TrackedFrame& frame) {
   reconstruction_ms_ += stopwatch.elapsed_ms();
 }
 
-CalibrationProgress Calibration::progress() const {
-  CalibrationProgress progress;
-  progress.keyframes = eye_->keyframes();
-  progress.rotation_coverage_deg = hand_path_.rotation_coverage_deg();
-  progress.translation_coverage_mm = hand_path_.translation_coverage_mm();
-  progress.guidance = guidance_for({.board = options_.start.board,
-                                    .board_seen = eye_->keyframes() > 0,
-                                    .any_frame = frames_ > 0,
-                                    .hand_hidden = hand_hidden_,
-                                    .images = images_.recent(),
-                                    .features_recent = static_cast<double>(features_recent_),
-                                    .state = state_,
-                                    .rotation_coverage_deg = progress.rotation_coverage_deg,
-                                    .second_axis_deg = hand_path_.second_axis_deg(),
-                                    .translation_coverage_mm = progress.translation_coverage_mm});
-  const std::vector<RegisteredFrame> frames = thinned(eye_->current().frames, kFramesOnTheWay);
-  const Estimate estimate_so_far = estimate(frames, hand_, options_.noise, eye_->scale());
-  tell_sigma(estimate_so_far, progress);
-  return progress;
+Situation Calibration::situation() const {
+  return {.board = options_.start.board,
+          .any_frame = frames_ > 0,
+          .hand_hidden = hand_hidden_,
+          .images = images_.recent(),
+          .features_recent = static_cast<double>(features_recent_),
+          .state = state_,
+          .keyframes = eye_->keyframes(),
+          .rotation_coverage_deg = hand_path_.rotation_coverage_deg(),
+          .second_axis_deg = hand_path_.second_axis_deg(),
+          .translation_coverage_mm = hand_path_.translation_coverage_mm()};
 }
 
-void Calibration::tell_sigma(const Estimate& so_far, CalibrationProgress& progress) const {
-  if (!so_far.likelihood) return;
-  if (!is_lens_given() && hand_contradicts_lens(so_far.observations)) return;
-  const Matrix6d& covariance = so_far.likelihood->covariance;
-  progress.sigma_beside_lens =
-      MethodSigma{sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
-  if (!lens_covariance_) return;
-  progress.sigma_rotation_deg = sigma_rotation_deg(covariance + *lens_covariance_);
-  progress.sigma_translation_mm = sigma_translation_mm(covariance + *lens_covariance_);
+ProvisionalSnapshot Calibration::outline() const {
+  return {.frames = thinned(eye_->current().frames, kFramesOnTheWay),
+          .hand = trimmed(hand_),
+          .noise = options_.noise,
+          .scale = eye_->scale(),
+          .wanted = options_.start.wanted,
+          .lens_given = options_.is_lens_given(),
+          .lens_covariance = lens_covariance_};
+}
+
+CalibrationSnapshot Calibration::snapshot() {
+  CalibrationSnapshot snapshot{
+      .options = options_,
+      .begun = begin_result(),
+      .reconstruction = {},
+      .scale = eye_->scale(),
+      .hand = trimmed(hand_),
+      .hand_path = {hand_path_.room_from_hand().begin(), hand_path_.room_from_hand().end()},
+      .images = images_};
+  snapshot.reconstruction = reconstruct(snapshot.begun);
+  return snapshot;
 }
 
 CalibrationResult Calibration::solve() {
-  CalibrationResult result = begin_result();
-  const Reconstruction reconstruction = reconstruct(result);
-  const Stopwatch stopwatch;
-  const Estimate found = estimate(reconstruction.frames, hand_, options_.noise, eye_->scale());
-  write_estimate(found, options_.noise, result);
-  lens_covariance_ = lens_covariance(reconstruction, found, hand_);
-  const Finding finding = conclude({.frames_received = frames_,
-                                    .images = images_,
-                                    .hand_path = hand_path_.room_from_hand(),
-                                    .reconstruction = reconstruction,
-                                    .estimate = found,
-                                    .lens_covariance = lens_covariance_,
-                                    .noise = options_.noise,
-                                    .wanted = options_.start.wanted});
-  if (found.likelihood && finding.judgement) write_covariance(finding.covariance, result);
-  if (!finding.lens_known) {
-    lens_covariance_.reset();
-    if (result.lens) result.lens->observable = false;
-  }
-  result.reason = finding.reason;
-  result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
-  result.advice = advice_for(result.reason, found);
-  result.timings_ms.handeye = stopwatch.elapsed_ms();
-  return result;
-}
-
-std::string Calibration::advice_for(Reason reason, const Estimate& found) const {
-  const std::optional<Board>& board = options_.start.board;
-  std::string advice = board ? reason_advice(reason, *board) : std::string(reason_advice(reason));
-  if (!found.stood_still || !found.likelihood) return advice;
-  if (!advice.empty()) advice += ' ';
-  return advice + std::string(kStoodStillAdvice);
+  SolvedCalibration outcome = handeye::solve(snapshot());
+  learn(outcome);
+  return std::move(outcome.result);
 }
 
 CalibrationResult Calibration::begin_result() const {

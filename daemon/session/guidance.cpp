@@ -10,61 +10,96 @@ constexpr double kEnoughRotation_deg = 20;
 constexpr double kEnoughSecondAxis_deg = 3;
 constexpr double kEnoughTranslation_mm = 15;
 
-/// About the picture itself; empty: it is as it should be, or as good as it can be.
-std::string guidance_about_picture(const Situation& situation) {
+/// About the picture itself; kNone: it is as it should be, or as good as it can be.
+Guidance about_picture(const Situation& situation) {
   switch (situation.images) {
     case ImageCondition::kUnusable:
-      return "the camera's images cannot be used: check its settings and its cable";
+      return {GuideCode::kImageUnusable,
+              "the camera's images cannot be used: check its settings and its cable"};
     case ImageCondition::kDark:
-      return "too dark: switch the light on, take the lens cap off";
+      return {GuideCode::kTooDark, "too dark: switch the light on, take the lens cap off"};
     case ImageCondition::kFrozen:
-      return "the picture is frozen: check the camera's cable";
+      return {GuideCode::kFrozen, "the picture is frozen: check the camera's cable"};
     case ImageCondition::kBright:
-      return "picture too bright: draw back, or turn the light down";
+      return {GuideCode::kTooBright, "picture too bright: draw back, or turn the light down"};
     case ImageCondition::kBlurred:
-      return "slower: the picture is blurred";
+      return {GuideCode::kSlower, "slower: the picture is blurred"};
     default:
-      return "";
+      return {};
   }
 }
 
-/// About what is in view; empty: it is as it should be.
-std::string guidance_about_scene(const Situation& situation) {
-  if (situation.features_recent >= kFewFeatures) return "";
-  return "too little to see: go nearer to a textured surface, or give more light";
+/// About what is in view; kNone: it is as it should be.
+Guidance about_scene(const Situation& situation) {
+  if (situation.features_recent >= kFewFeatures) return {};
+  return {GuideCode::kLittleToSee,
+          "too little to see: go nearer to a textured surface, or give more light"};
 }
 
-std::string guidance_about_board(const Situation& situation) {
-  if (!situation.board_seen) return "show the board to the scope: " + to_string(*situation.board);
-  if (situation.state == ReconstructionState::kTracking) return "";
+Guidance about_board(const Situation& situation) {
+  if (situation.keyframes == 0) {
+    return {GuideCode::kShowBoard, "show the board to the scope: " + to_string(*situation.board)};
+  }
+  if (situation.state == ReconstructionState::kTracking) return {};
   if (situation.board->kind == Board::Kind::kChessboard || situation.features_recent > 0) {
-    return "board not wholly in view: point the scope at its middle, or draw back";
+    return {GuideCode::kWholeBoard,
+            "board not wholly in view: point the scope at its middle, or draw back"};
   }
-  return "board not in view: point the scope at it";
+  return {GuideCode::kShowBoard, "board not in view: point the scope at it"};
 }
 
-std::string guidance_about_motion(const Situation& situation) {
-  if (situation.rotation_coverage_deg < kEnoughRotation_deg) return "tilt the scope up and down";
-  if (situation.second_axis_deg < kEnoughSecondAxis_deg) return "tilt the scope left and right";
-  // Against a board the scale is known, and tilting is all that is needed.
-  if (situation.board) return "";
-  if (situation.translation_coverage_mm < kEnoughTranslation_mm) {
-    return "slide the scope sideways and in and out";
+Guidance ask_for(MissingMotion missing) {
+  GuideCode code = GuideCode::kNone;
+  switch (missing) {
+    case MissingMotion::kNone:
+      break;
+    case MissingMotion::kTiltUpAndDown:
+      code = GuideCode::kTiltUpAndDown;
+      break;
+    case MissingMotion::kTurnLeftAndRight:
+      code = GuideCode::kTurnLeftAndRight;
+      break;
+    case MissingMotion::kRoll:
+      code = GuideCode::kRoll;
+      break;
+    case MissingMotion::kSlideInAndOut:
+      code = GuideCode::kSlideInAndOut;
+      break;
+    case MissingMotion::kSlideSideways:
+      code = GuideCode::kSlideSideways;
+      break;
+    case MissingMotion::kKeepMoving:
+      code = GuideCode::kKeepMoving;
+      break;
   }
-  if (situation.state != ReconstructionState::kTracking) return "slide the scope sideways";
-  return "";
+  return {code, std::string(words(missing))};
+}
+
+/// From the hand's path alone: its axes are not the picture's as long as hand_from_eye is unknown.
+MissingMotion missing_by_path(const Situation& situation) {
+  if (situation.rotation_coverage_deg < kEnoughRotation_deg) return MissingMotion::kTiltUpAndDown;
+  if (situation.second_axis_deg < kEnoughSecondAxis_deg) return MissingMotion::kTurnLeftAndRight;
+  // Against a board the scale is known, and tilting is all that is needed.
+  if (situation.board) return MissingMotion::kNone;
+  const bool parallax = situation.state == ReconstructionState::kTracking;
+  return parallax && situation.translation_coverage_mm >= kEnoughTranslation_mm
+             ? MissingMotion::kNone
+             : MissingMotion::kSlideSideways;
 }
 
 }  // namespace
 
-std::string guidance_for(const Situation& situation) {
-  if (!situation.any_frame) return "no image from the camera yet";
-  if (situation.hand_hidden) return "scope hidden from the tracker: turn its markers towards it";
-  const std::string about_picture = guidance_about_picture(situation);
-  if (!about_picture.empty()) return about_picture;
-  const std::string about_view =
-      situation.board ? guidance_about_board(situation) : guidance_about_scene(situation);
-  return about_view.empty() ? guidance_about_motion(situation) : about_view;
+Guidance guidance_for(const Situation& situation, const Provisional& so_far) {
+  if (!situation.any_frame) return {GuideCode::kNoImage, "no image from the camera yet"};
+  if (situation.hand_hidden) {
+    return {GuideCode::kHandHidden, "scope hidden from the tracker: turn its markers towards it"};
+  }
+  if (Guidance picture = about_picture(situation); picture.code != GuideCode::kNone) {
+    return picture;
+  }
+  Guidance view = situation.board ? about_board(situation) : about_scene(situation);
+  if (view.code != GuideCode::kNone) return view;
+  return ask_for(so_far.solution ? so_far.missing : missing_by_path(situation));
 }
 
 }  // namespace handeye

@@ -180,30 +180,44 @@ TEST(WriteSession, KeepsTheSixteenNewestAcknowledgements) {
 }
 
 status_t progress_status(const CalibrationProgress& progress, double elapsed_s) {
-  const StartOptions start{.wanted = {.rotation_deg = 0.3, .translation_mm = 1.5},
-                           .max_duration_s = 30};
   status_t status{};
-  write_progress(progress, start, elapsed_s, status);
+  write_progress(progress,
+                 {.wanted = {.rotation_deg = 0.3, .translation_mm = 1.5},
+                  .min_duration_s = 8,
+                  .max_duration_s = 30,
+                  .elapsed_s = elapsed_s},
+                 status);
   return status;
 }
 
+CalibrationProgress with_sigma(double rotation_deg, double translation_mm) {
+  CalibrationProgress progress;
+  progress.provisional.sigma = MethodSigma{rotation_deg, translation_mm};
+  return progress;
+}
+
 TEST(WriteProgress, WithoutAnEstimateIsThatOfTheClock) {
-  const status_t status = progress_status({.guidance = "tilt up and down"}, 6);
+  CalibrationProgress progress;
+  progress.guidance = {GuideCode::kTiltUpAndDown, "tilt up and down"};
+  const status_t status = progress_status(progress, 6);
   EXPECT_DOUBLE_EQ(status.progress, 0.2);
   EXPECT_EQ(status.elapsed_s, 6);
   EXPECT_EQ(status.sigma_rotation_deg, -1);
   EXPECT_EQ(status.sigma_translation_mm, -1);
+  EXPECT_EQ(status.time_offset_sigma_s, -1);
+  EXPECT_FALSE(status.has_estimate);
+  EXPECT_EQ(status.q_wxyz[0], 0) << "no estimate must not look like one";
+  EXPECT_EQ(status.guidance_code, status_t::GUIDE_TILT_UP_AND_DOWN);
   EXPECT_EQ(status.guidance, "tilt up and down");
 }
 
 TEST(WriteProgress, IsThatOfTheWorseSigma) {
   // Rotation is there; translation is at twice what is wanted: a quarter of the time it takes.
-  const status_t status = progress_status({.keyframes = 12,
-                                           .rotation_coverage_deg = 33,
-                                           .translation_coverage_mm = 120,
-                                           .sigma_rotation_deg = 0.2,
-                                           .sigma_translation_mm = 3.0},
-                                          1);
+  CalibrationProgress progress = with_sigma(0.2, 3.0);
+  progress.situation.keyframes = 12;
+  progress.situation.rotation_coverage_deg = 33;
+  progress.situation.translation_coverage_mm = 120;
+  const status_t status = progress_status(progress, 5);
   EXPECT_DOUBLE_EQ(status.progress, 0.25);
   EXPECT_EQ(status.sigma_rotation_deg, 0.2);
   EXPECT_EQ(status.sigma_translation_mm, 3.0);
@@ -212,11 +226,35 @@ TEST(WriteProgress, IsThatOfTheWorseSigma) {
   EXPECT_EQ(status.translation_coverage_mm, 120);
 }
 
+TEST(WriteProgress, CountsTheShortestDurationToo) {
+  EXPECT_DOUBLE_EQ(progress_status(with_sigma(0.01, 0.01), 2).progress, 0.25);
+  EXPECT_LT(progress_status(with_sigma(0.01, 0.01), 12).progress, 1) << "not confirmed yet";
+}
+
 TEST(WriteProgress, StaysBetweenZeroAndOne) {
   EXPECT_EQ(progress_status({}, 0).progress, 0);
   EXPECT_EQ(progress_status({}, 31).progress, 1);
-  EXPECT_EQ(progress_status({.sigma_rotation_deg = 0.01, .sigma_translation_mm = 0.01}, 1).progress,
-            1);
+  EXPECT_EQ(progress_status(with_sigma(0.01, 0.01), 31).progress, 1);
+}
+
+TEST(WriteProgress, CarriesTheAnswerAsItStands) {
+  CalibrationProgress progress = with_sigma(0.2, 1.0);
+  Provisional& answer = progress.provisional;
+  answer.solution = HandEyeSolution{};
+  answer.solution->hand_from_eye = make_pose({0.5, 0.5, 0.5, 0.5}, Eigen::Vector3d(1.0, 2.0, 3.0));
+  answer.time_offset_s = 0.03;
+  answer.time_offset_sigma_s = 0.001;
+  answer.time_offset_confidence = 0.8;
+  answer.turned_deg = {4, 5, 6};
+  const status_t status = progress_status(progress, 5);
+  EXPECT_TRUE(status.has_estimate);
+  for (const double q : status.q_wxyz) EXPECT_NEAR(q, 0.5, 1e-12);
+  EXPECT_EQ(status.t_mm[2], 3);
+  EXPECT_EQ(status.time_offset_s, 0.03);
+  EXPECT_EQ(status.time_offset_sigma_s, 0.001);
+  EXPECT_EQ(status.time_offset_confidence, 0.8);
+  EXPECT_EQ(status.turned_deg[0], 4);
+  EXPECT_EQ(status.turned_deg[2], 6);
 }
 
 }  // namespace

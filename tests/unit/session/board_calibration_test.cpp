@@ -168,7 +168,8 @@ TEST(BoardCalibration, NamesTheBoardThatWasNotSeen) {
   const CalibrationResult result = calibration.solve();
   EXPECT_EQ(result.reason, Reason::kTooFewFeatures);
   EXPECT_THAT(result.advice, testing::HasSubstr("chessboard:9x6:4"));
-  EXPECT_EQ(calibration.progress().guidance, "show the board to the scope: chessboard:9x6:4");
+  EXPECT_EQ(guidance_for(calibration.situation()).words,
+            "show the board to the scope: chessboard:9x6:4");
 }
 
 TEST(BoardCalibration, BlamesTheViewNotTheMotionWhereTheBoardWasSeldomSeen) {

@@ -144,15 +144,26 @@ TEST(Calibration, SaysWhichDeviceWasSilent) {
 TEST(Calibration, ProgressTellsSigmaAndGuidesTheHand) {
   Scene scene;
   Calibration calibration(options());
-  EXPECT_EQ(calibration.progress().guidance, "no image from the camera yet");
+  EXPECT_EQ(guidance_for(calibration.situation()).code, GuideCode::kNoImage);
   for (int k = 0; k < 8 * kTrackerRate_hz; ++k) calibration.add_hand(scene.hand(k));
   for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
-  const CalibrationProgress progress = calibration.progress();
-  ASSERT_TRUE(progress.sigma_rotation_deg);
-  EXPECT_GT(*progress.sigma_rotation_deg, 0);
-  EXPECT_GT(progress.keyframes, 5);
-  EXPECT_GT(progress.rotation_coverage_deg, 15);
-  EXPECT_EQ(progress.guidance, "");
+  const Situation situation = calibration.situation();
+  EXPECT_GT(situation.keyframes, 5);
+  EXPECT_GT(situation.rotation_coverage_deg, 15);
+  const Provisional so_far = provisional(calibration.outline());
+  ASSERT_TRUE(so_far.solution && so_far.sigma);
+  EXPECT_GT(so_far.sigma->rotation_deg, 0);
+  const Pose& found = so_far.solution->hand_from_eye;
+  EXPECT_LT(deg_from_rad(rotation_angle_rad(found.linear(), true_hand_from_eye().linear())),
+            3.5 * so_far.sigma->rotation_deg);
+  EXPECT_LT((found.translation() - true_hand_from_eye().translation()).norm(),
+            3.5 * so_far.sigma->translation_mm);
+  ASSERT_TRUE(so_far.time_offset_sigma_s);
+  EXPECT_NEAR(so_far.time_offset_s, kTimeOffset_s, 0.003);
+  EXPECT_GT(so_far.time_offset_confidence, 0);
+  EXPECT_GT(so_far.turned_deg.head<2>().minCoeff(), 2);
+  const bool wanted = so_far.sigma->rotation_deg <= 0.3 && so_far.sigma->translation_mm <= 1.5;
+  EXPECT_EQ(guidance_for(situation, so_far).code == GuideCode::kNone, wanted);
 }
 
 TEST(Calibration, ClaimsNoSigmaThatLeavesTheLensOut) {
@@ -162,16 +173,15 @@ TEST(Calibration, ClaimsNoSigmaThatLeavesTheLensOut) {
   Calibration calibration(with_lens);
   for (int k = 0; k < 8 * kTrackerRate_hz; ++k) calibration.add_hand(scene.hand(k));
   for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
-  const CalibrationProgress before = calibration.progress();
-  EXPECT_FALSE(before.sigma_rotation_deg);
-  EXPECT_FALSE(before.sigma_translation_mm);
+  const Provisional before = provisional(calibration.outline());
+  EXPECT_FALSE(before.sigma);
   ASSERT_TRUE(before.sigma_beside_lens);
   const CalibrationResult result = calibration.solve();
   ASSERT_TRUE(result.lens && result.lens->observable);
-  const CalibrationProgress after = calibration.progress();
-  ASSERT_TRUE(after.sigma_rotation_deg && after.sigma_beside_lens);
-  EXPECT_GT(*after.sigma_rotation_deg, after.sigma_beside_lens->rotation_deg);
-  EXPECT_GT(*after.sigma_translation_mm, after.sigma_beside_lens->translation_mm);
+  const Provisional after = provisional(calibration.outline());
+  ASSERT_TRUE(after.sigma && after.sigma_beside_lens);
+  EXPECT_GT(after.sigma->rotation_deg, after.sigma_beside_lens->rotation_deg);
+  EXPECT_GT(after.sigma->translation_mm, after.sigma_beside_lens->translation_mm);
 }
 
 // Under a lens of a wrong focal length the eye seems to turn otherwise than the hand.
@@ -190,31 +200,12 @@ TEST(Calibration, BelievesNoLensThatTheHandContradicts) {
     calibration.add_hand(sample);
   }
   for (int k = 0; k < 8 * kFrameRate_hz; ++k) calibration.add_frame(scene.frame(k));
-  EXPECT_FALSE(calibration.progress().sigma_beside_lens);
+  EXPECT_FALSE(provisional(calibration.outline()).sigma_beside_lens);
   const CalibrationResult result = calibration.solve();
   EXPECT_EQ(result.verdict, Verdict::kRefused);
   EXPECT_EQ(result.reason, Reason::kLensUnobservable) << reason_word(result.reason);
   ASSERT_TRUE(result.lens);
   EXPECT_FALSE(result.lens->observable);
-}
-
-TEST(Guidance, NamesTheFirstThingThatIsMissing) {
-  Situation situation;
-  EXPECT_EQ(guidance_for(situation), "no image from the camera yet");
-  situation.any_frame = true;
-  situation.hand_hidden = true;
-  EXPECT_NE(guidance_for(situation).find("hidden"), std::string::npos);
-  situation.hand_hidden = false;
-  EXPECT_NE(guidance_for(situation).find("light"), std::string::npos);
-  situation.features_recent = 200;
-  EXPECT_EQ(guidance_for(situation), "tilt the scope up and down");
-  situation.rotation_coverage_deg = 30;
-  EXPECT_EQ(guidance_for(situation), "tilt the scope left and right");
-  situation.second_axis_deg = 8;
-  EXPECT_NE(guidance_for(situation).find("slide"), std::string::npos);
-  situation.translation_coverage_mm = 30;
-  situation.state = ReconstructionState::kTracking;
-  EXPECT_EQ(guidance_for(situation), "");
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/background_thread.hpp"
+
+#include <sys/resource.h>
+
+namespace handeye {
+
+BackgroundThread::BackgroundThread(int niceness)
+    : thread_([this, niceness](const std::stop_token& stop) { work(stop, niceness); }) {}
+
+BackgroundThread::~BackgroundThread() = default;
+
+bool BackgroundThread::busy() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_;
+}
+
+void BackgroundThread::post(std::function<void()> job) {
+  {
+    const std::scoped_lock lock(mutex_);
+    job_ = std::move(job);
+    busy_ = true;
+  }
+  posted_.notify_one();
+}
+
+void BackgroundThread::work(const std::stop_token& stop, int niceness) {
+  // On Linux, of this thread alone. It is a courtesy: without it everything still works.
+  if (niceness > 0) setpriority(PRIO_PROCESS, 0, niceness);
+  std::unique_lock lock(mutex_);
+  while (posted_.wait(lock, stop, [this] { return static_cast<bool>(job_); })) {
+    auto job = std::exchange(job_, nullptr);
+    lock.unlock();
+    job();
+    job = nullptr;
+    lock.lock();
+    // The next one may have been posted since the answer was there.
+    busy_ = static_cast<bool>(job_);
+    if (stop.stop_requested()) return;
+  }
+}
+
+}  // namespace handeye

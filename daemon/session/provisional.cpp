@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/provisional.hpp"
+
+#include <algorithm>
+
+#include "daemon/handeye/motion_facts.hpp"
+#include "daemon/session/estimate.hpp"
+#include "daemon/session/lens_sensitivity.hpp"
+
+namespace handeye {
+namespace {
+
+MethodSigma sigma_of(const Matrix6d& covariance) {
+  return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
+}
+
+/// How much better hand and eye agree at the offset than anywhere else.
+double confidence_of(const TimeOffset& offset) {
+  return std::clamp(offset.peak - std::max(offset.second_peak, 0.0), 0.0, 1.0);
+}
+
+JudgeOptions judge_options(const ProvisionalSnapshot& snapshot, const Estimate& so_far) {
+  JudgeOptions options;
+  options.wanted_rotation_deg = snapshot.wanted.rotation_deg;
+  options.wanted_translation_mm = snapshot.wanted.translation_mm;
+  options.solver = so_far.options;
+  return options;
+}
+
+Eigen::Vector3d turns_of(const Estimate& so_far) {
+  std::vector<Pose> room_from_hand;
+  room_from_hand.reserve(so_far.observations.size());
+  for (const HandEyeObservation& observation : so_far.observations) {
+    room_from_hand.push_back(observation.poses.room_from_hand);
+  }
+  return turned_deg(room_from_hand, so_far.likelihood->solution.hand_from_eye);
+}
+
+void write_time_offset(const Estimate& so_far, Provisional& answer) {
+  if (!so_far.correlation) return;
+  answer.time_offset_s = so_far.time_offset_s;
+  answer.time_offset_sigma_s = so_far.time_offset_sigma_s;
+  answer.time_offset_confidence = confidence_of(*so_far.correlation);
+}
+
+void write_sigma(const ProvisionalSnapshot& snapshot, const Estimate& so_far,
+                 const Matrix6d& covariance, Provisional& answer) {
+  if (!covariance.allFinite()) return;
+  if (!snapshot.lens_given && hand_contradicts_lens(so_far.observations)) return;
+  answer.sigma_beside_lens = sigma_of(covariance);
+  if (snapshot.lens_covariance) answer.sigma = sigma_of(covariance + *snapshot.lens_covariance);
+}
+
+}  // namespace
+
+Provisional provisional(const ProvisionalSnapshot& snapshot) {
+  Provisional answer;
+  const Estimate so_far = estimate(snapshot.frames, snapshot.hand, snapshot.noise, snapshot.scale);
+  answer.frames = static_cast<std::int64_t>(so_far.observations.size());
+  write_time_offset(so_far, answer);
+  if (!so_far.likelihood) return answer;
+  const Judgement judgement =
+      judge(so_far.observations, so_far.likelihood, judge_options(snapshot, so_far));
+  answer.solution = so_far.likelihood->solution;
+  answer.missing = judgement.missing;
+  answer.turned_deg = turns_of(so_far);
+  write_sigma(snapshot, so_far, judgement.covariance, answer);
+  return answer;
+}
+
+}  // namespace handeye

@@ -26,6 +26,13 @@ void append_fixed(std::string& text, double value, int decimals) {
   text.append(digits.data(), end);
 }
 
+void append_scientific(std::string& text, double value, int decimals) {
+  std::array<char, 32> digits;
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                          std::chars_format::scientific, decimals);
+  text.append(digits.data(), end);
+}
+
 template <typename Values>
 void append_values(std::string& text, const Values& values, int decimals) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -85,6 +92,27 @@ void append_bodies(std::string& text, const std::vector<Body>& bodies) {
   text += kLineEnd;
 }
 
+void append_covariances(std::string& text, const std::vector<BodyCovariance>& covariances) {
+  if (covariances.empty()) return;
+  text += "6dcov ";
+  append_integer(text, covariances.size());
+  for (const BodyCovariance& body : covariances) {
+    text += " [";
+    append_integer(text, body.id);
+    text += ' ';
+    append_values(text, body.reference_point_mm, 3);
+    text += "][";
+    for (Eigen::Index row = 0; row < 6; ++row) {
+      for (Eigen::Index column = row; column < 6; ++column) {
+        if (row + column > 0) text += ' ';
+        append_scientific(text, body.covariance(row, column), 3);
+      }
+    }
+    text += ']';
+  }
+  text += kLineEnd;
+}
+
 void append_markers(std::string& text, const std::vector<Marker>& markers) {
   if (markers.empty()) return;
   text += "3d ";
@@ -122,6 +150,7 @@ void format_datagram(const Frame& frame, std::string& datagram) {
     datagram += kLineEnd;
   }
   append_bodies(datagram, frame.bodies);
+  append_covariances(datagram, frame.covariances);
   append_markers(datagram, frame.markers);
 }
 

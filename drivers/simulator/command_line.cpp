@@ -28,12 +28,17 @@ struct RawOptions {
                                    SimulatorOptions{}.tracker_noise_mm};
   std::string camera_out;
   std::string truth_out;
+  std::vector<std::string> tracker_faults;
+  std::vector<std::string> camera_faults;
+  std::string timestamps{"ts"};
+  std::optional<std::string> head_turn;
 };
 
 void add_scene_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
   command.add_option("--seed", options.seed, "Draws everything; default: random, printed");
   command.add_option("--motion", raw.motion, "How the scope is moved")
-      ->check(CLI::IsMember({"free", "translation", "rotation", "single-axis", "pivot", "static"}))
+      ->check(CLI::IsMember({"free", "translation", "rotation", "single-axis", "pivot", "static",
+                             "wobble", "pivot-slide", "roll-only"}))
       ->capture_default_str();
   command
       .add_option("--amplitude", raw.amplitude_deg_mm,
@@ -109,10 +114,39 @@ void add_device_options(CLI::App& command, SimulatorOptions& options, RawOptions
   command.add_option("--truth-out", raw.truth_out, "Writes the truth (JSON)")->type_name("FILE");
 }
 
+void add_fault_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
+  command.add_option("--tracker-disturb", raw.tracker_faults, tracker_fault_help())
+      ->delimiter(',')
+      ->type_name("FAULT");
+  command.add_option("--camera-disturb", raw.camera_faults, camera_fault_help())
+      ->delimiter(',')
+      ->type_name("FAULT");
+  command
+      .add_option("--midnight", options.midnight_s,
+                  "So many seconds after the start the tracker's time of day falls back to 0")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->type_name("SECONDS");
+  command
+      .add_option("--timestamps", raw.timestamps,
+                  "How the tracker tells time: of day (ts), since 1970 (ts2), or not at all")
+      ->check(CLI::IsMember({"ts", "ts2", "none"}))
+      ->capture_default_str();
+  command.add_flag(
+      "--covariance", options.covariance,
+      "Tracker noise that differs by axis and time, --noise in the mean, and lines that "
+      "tell it (6dcov)");
+  command
+      .add_option("--turn-head", raw.head_turn,
+                  "From then on the camera is turned against the scope by so many degrees, about "
+                  "its optical axis (roll) unless told otherwise")
+      ->type_name("SECONDS:DEG[:roll|tilt|turn]");
+}
+
 void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
   add_scene_options(command, options, raw);
   add_picture_options(command, options, raw);
   add_device_options(command, options, raw);
+  add_fault_options(command, options, raw);
 }
 
 CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
@@ -150,6 +184,18 @@ Board board_from(const std::string& text) {
   return std::get<Board>(parsed);
 }
 
+void complete_faults(SimulatorOptions& options, const RawOptions& raw) {
+  for (const std::string& text : raw.tracker_faults) {
+    options.tracker_faults.push_back(tracker_fault(text));
+  }
+  for (const std::string& text : raw.camera_faults) {
+    options.camera_faults.push_back(camera_fault(text));
+  }
+  if (raw.timestamps == "ts2") options.timestamps = Timestamps::kUnixTime;
+  if (raw.timestamps == "none") options.timestamps = Timestamps::kNone;
+  if (raw.head_turn) options.head_turn = parse_head_turn(*raw.head_turn);
+}
+
 /// The checks and conversions that go beyond a single option.
 void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   line.simulator.motion = motion_from_name(raw.motion).value();
@@ -166,6 +212,7 @@ void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   if (raw.board) line.simulator.board = board_from(*raw.board);
   line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
   line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);
+  complete_faults(line.simulator, raw);
   if (!raw.camera_out.empty()) line.camera_out = raw.camera_out;
   if (!raw.truth_out.empty()) line.truth_out = raw.truth_out;
   if (!is_valid_channel_prefix(line.live.channel_prefix)) {

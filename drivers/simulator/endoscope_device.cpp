@@ -6,28 +6,28 @@
 #include <opencv2/imgcodecs.hpp>
 
 namespace handeye::simulator {
-namespace {
 
-/// From the grabber's stamp to the program that wants the frame.
-constexpr std::int64_t kDeliveryNs = 2'000'000;
-
-}  // namespace
-
-EndoscopeDevice::EndoscopeDevice(const World& world) : world_(&world), view_(world) {}
+EndoscopeDevice::EndoscopeDevice(const World& world)
+    : world_(&world), view_(world), delivery_(world) {}
 
 double EndoscopeDevice::exposure_s(std::uint32_t number) const {
   return view_.exposed_s(number);
 }
 
 std::int64_t EndoscopeDevice::timestamp_ns(std::uint32_t number) const {
-  return world_->host_ns(exposure_s(number) + world_->camera_delay_s);
+  return delivery_.timestamp_ns(exposure_s(number));
+}
+
+std::optional<std::int64_t> EndoscopeDevice::arrival_ns(std::uint32_t number) const {
+  if (view_.fate(number).missing) return std::nullopt;
+  return delivery_.arrival_ns(exposure_s(number));
 }
 
 void EndoscopeDevice::make(std::uint32_t number, SimulatedFrame& frame) {
   frame.number = number;
   frame.exposed_s = exposure_s(number);
   frame.timestamp_ns = timestamp_ns(number);
-  frame.arrival_ns = frame.timestamp_ns + kDeliveryNs;
+  frame.arrival_ns = arrival_ns(number).value_or(frame.timestamp_ns);
   view_.draw(number, frame.grey);
   encode(frame);
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "drivers/simulator/endoscope_view.hpp"
+#include "drivers/simulator/frame_delivery.hpp"
 #include "drivers/simulator/world.hpp"
 
 namespace handeye::simulator {
@@ -19,7 +21,7 @@ struct SimulatedFrame {
   std::uint32_t number{0};       ///< the camera's count
   double exposed_s{0};           ///< simulated time of mid-exposure
   std::int64_t timestamp_ns{0};  ///< host clock, as the grabber stamps it: the camera's delay late
-  std::int64_t arrival_ns{0};    ///< host clock, when software gets it
+  std::int64_t arrival_ns{0};    ///< host clock, when software gets it; of a lost one, its stamp
   cv::Mat grey;                  ///< CV_8UC1
   std::vector<std::uint8_t> jpeg;
 };
@@ -34,10 +36,10 @@ class EndoscopeDevice {
   double exposure_s(std::uint32_t number) const;
   std::int64_t timestamp_ns(std::uint32_t number) const;
 
-  /// Whether the frame gets lost on its way.
-  bool is_missing(std::uint32_t number) const { return view_.fate(number).missing; }
+  /// When software gets a frame, host clock; later frames never earlier. Nothing: it gets lost.
+  std::optional<std::int64_t> arrival_ns(std::uint32_t number) const;
 
-  /// Renders and encodes a frame; its memory is reused.
+  /// Renders and encodes a frame, also one that would get lost; its memory is reused.
   void make(std::uint32_t number, SimulatedFrame& frame);
 
  private:
@@ -45,6 +47,7 @@ class EndoscopeDevice {
 
   const World* world_;
   EndoscopeView view_;
+  FrameDelivery delivery_;
 };
 
 }  // namespace handeye::simulator

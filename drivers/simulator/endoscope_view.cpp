@@ -39,16 +39,15 @@ void EndoscopeView::draw(std::uint32_t number, cv::Mat& grey) {
 }
 
 void EndoscopeView::collect(double time_s, cv::Mat1f& radiance) {
-  const Motion& motion = world_->motion;
   const Disturbances& disturbances = world_->options.disturbances;
-  const Pose surface_from_eye = motion.surface_from_eye(time_s);
+  const Pose surface_from_eye = world_->surface_from_eye(time_s);
   renderer_.render_light(surface_from_eye, radiance);
   depth_mm_ = renderer_.depth_mm();
   if (motion_blur_) {
     const double half_s = 0.5 * disturbances.exposure_s;
     motion_blur_->apply(
-        depth_mm_, motion.surface_from_eye(time_s - half_s).inverse() * surface_from_eye,
-        motion.surface_from_eye(time_s + half_s).inverse() * surface_from_eye, radiance);
+        depth_mm_, world_->surface_from_eye(time_s - half_s).inverse() * surface_from_eye,
+        world_->surface_from_eye(time_s + half_s).inverse() * surface_from_eye, radiance);
   }
   if (instrument_) {
     depth_mm_ = depth_mm_.clone();  // the renderer's own starts its next picture

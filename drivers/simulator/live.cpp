@@ -14,7 +14,7 @@
 
 #include "drivers/simulator/endoscope_device.hpp"
 #include "drivers/simulator/pacing.hpp"
-#include "drivers/simulator/tracker_device.hpp"
+#include "drivers/simulator/tracker_link.hpp"
 #include "drivers/simulator/udp_sender.hpp"
 #include "protocol/bus.hpp"
 
@@ -57,7 +57,7 @@ class LiveDevices {
   const World* world_;
   double duration_s_;
   EndoscopeDevice endoscope_;
-  TrackerDevice tracker_;
+  TrackerLink tracker_;
   UdpSender sender_;
   Bus bus_;
   Publisher<image_t> frames_out_;
@@ -89,7 +89,7 @@ void LiveDevices::render_frames(const std::stop_token& stop) {
     skipped_ += in_time - number;
     number = in_time;
     if (number == end) break;
-    if (endoscope_.is_missing(number)) {
+    if (!endoscope_.arrival_ns(number)) {
       empty_.put(std::move(*frame));
       continue;
     }
@@ -101,16 +101,16 @@ void LiveDevices::render_frames(const std::stop_token& stop) {
   rendered_.close();
 }
 
-/// The first frame from `number` on that can be ready when its time stamp comes.
+/// The first frame from `number` on that can be ready when it is to arrive, or gets lost anyway.
 std::uint32_t LiveDevices::first_in_time(std::uint32_t number, std::int64_t cost_ns) const {
   const std::int64_t ready_ns = monotonic_ns() + cost_ns;
-  while (endoscope_.timestamp_ns(number) < ready_ns) ++number;
+  while (endoscope_.arrival_ns(number).value_or(ready_ns) < ready_ns) ++number;
   return number;
 }
 
 void LiveDevices::publish_frames(const std::stop_token& stop) {
   while (auto frame = rendered_.take(stop)) {
-    if (!sleep_until((*frame)->timestamp_ns, stop)) return;
+    if (!sleep_until((*frame)->arrival_ns, stop)) return;
     publish(**frame);
     empty_.put(std::move(*frame));
   }

@@ -18,8 +18,8 @@ struct LiveOptions {
   std::string channel_prefix{kDefaultChannelPrefix};
 };
 
-/// Runs both devices in real time: datagrams over UDP at their arrival time, frames over LCM when
-/// their time stamp has come. Ends after `duration_s` of simulated time (0: never) or soon after
+/// Runs both devices in real time: datagrams over UDP at their arrival time, frames over LCM at
+/// theirs. Ends after `duration_s` of simulated time (0: never) or soon after
 /// `stopped()`, which is asked some 20 times a second. A frame that cannot be rendered in time is
 /// skipped; nothing ever drifts. Throws InputError when a connection cannot be had.
 DeviceCounts run_live(const World& world, double duration_s, const LiveOptions& options,

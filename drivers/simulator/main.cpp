@@ -66,8 +66,11 @@ DeviceCounts record(const CommandLine& line) {
 int simulate(int argc, char** argv) {
   const auto line = parse_command_line(argc, argv);
   if (!line) return static_cast<int>(ExitCode::kOk);
-  fmt::print(stderr, "handeye-sim: seed {}, motion {}, disturbances {}\n", line->simulator.seed,
-             motion_name(line->simulator.motion), describe(line->simulator.disturbances));
+  const SimulatorOptions& options = line->simulator;
+  fmt::print(stderr,
+             "handeye-sim: seed {}, motion {}, disturbances {}, of tracker {}, of camera {}\n",
+             options.seed, motion_name(options.motion), describe(options.disturbances),
+             spelling(options.tracker_faults), spelling(options.camera_faults));
   const DeviceCounts counts =
       line->command == CommandLine::Command::kRun ? run(*line) : record(*line);
   fmt::print(stderr, "handeye-sim: {} frames ({} skipped), {} datagrams {}\n", counts.frames,

@@ -7,13 +7,16 @@
 namespace handeye::simulator {
 namespace {
 
-constexpr std::array<std::pair<MotionKind, std::string_view>, 6> kNames{{
+constexpr std::array<std::pair<MotionKind, std::string_view>, 9> kNames{{
     {MotionKind::kFree, "free"},
     {MotionKind::kTranslation, "translation"},
     {MotionKind::kRotation, "rotation"},
     {MotionKind::kSingleAxis, "single-axis"},
     {MotionKind::kPivot, "pivot"},
     {MotionKind::kStatic, "static"},
+    {MotionKind::kWobble, "wobble"},
+    {MotionKind::kPivotSlide, "pivot-slide"},
+    {MotionKind::kRollOnly, "roll-only"},
 }};
 
 /// The eye looks straight down on the surface: x stays, y and z turn over.
@@ -77,12 +80,18 @@ Pose Motion::surface_from_eye(double time_s) const {
       surface_from_eye.translation() =
           target_ - options_.view_distance_mm * view_axis + shift(time_s);
       break;
-    case MotionKind::kPivot: {
+    case MotionKind::kPivot:
+    case MotionKind::kPivotSlide: {
       const Eigen::Vector3d pivot = home + Eigen::Vector3d(0, 0, options_.pivot_behind_eye_mm);
-      surface_from_eye.translation() = pivot - surface_from_eye.linear() * pivot_in_eye();
+      surface_from_eye.translation() =
+          pivot - surface_from_eye.linear() * pivot_in_eye() + slide_mm(time_s) * view_axis;
       break;
     }
+    case MotionKind::kWobble:
+      surface_from_eye.translation() = home + shift(time_s);
+      break;
     case MotionKind::kRotation:
+    case MotionKind::kRollOnly:
     case MotionKind::kStatic:
       surface_from_eye.translation() = home;
       break;
@@ -99,7 +108,12 @@ Eigen::Vector3d Motion::turn(double time_s) const {
       return largest * wander;
     case MotionKind::kSingleAxis:
       return largest * wander.x() * single_axis_;
-    case MotionKind::kPivot: {
+    case MotionKind::kRollOnly:
+      return {0, 0, largest * wander.z()};
+    case MotionKind::kWobble:
+      return rad_from_deg(options_.wobble_deg) * wander;
+    case MotionKind::kPivot:
+    case MotionKind::kPivotSlide: {
       const double tilt = rad_from_deg(options_.pivot_tilt_deg);
       return Eigen::Vector3d(tilt, tilt, largest).cwiseProduct(wander);
     }
@@ -111,8 +125,14 @@ Eigen::Vector3d Motion::turn(double time_s) const {
 }
 
 Eigen::Vector3d Motion::shift(double time_s) const {
-  return options_.shift_mm *
+  const double largest =
+      options_.kind == MotionKind::kWobble ? options_.wobble_mm : options_.shift_mm;
+  return largest *
          Eigen::Vector3d(shifts_[0].at(time_s), shifts_[1].at(time_s), shifts_[2].at(time_s));
+}
+
+double Motion::slide_mm(double time_s) const {
+  return options_.kind == MotionKind::kPivotSlide ? options_.shift_mm * shifts_[2].at(time_s) : 0;
 }
 
 }  // namespace handeye::simulator

@@ -25,6 +25,7 @@ enum class Purpose : std::uint32_t {
   kFlicker,
   kFieldStop,
   kInstrument,
+  kSight,
 };
 
 /// Random numbers that depend on seed and purpose alone.

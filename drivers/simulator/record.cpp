@@ -11,7 +11,7 @@
 
 #include "drivers/recording/recording.hpp"
 #include "drivers/simulator/endoscope_device.hpp"
-#include "drivers/simulator/tracker_device.hpp"
+#include "drivers/simulator/tracker_link.hpp"
 #include "drivers/simulator/truth_file.hpp"
 
 namespace handeye::simulator {
@@ -28,7 +28,7 @@ class FrameBatches {
   std::span<const SimulatedFrame> make(std::uint32_t& next, std::uint32_t end) {
     std::vector<std::future<void>> pending;
     for (; pending.size() < frames_.size() && next < end; ++next) {
-      if (devices_.front().is_missing(next)) continue;
+      if (!devices_.front().arrival_ns(next)) continue;
       pending.push_back(std::async(std::launch::async, [this, number = next, i = pending.size()] {
         devices_[i].make(number, frames_[i]);
       }));
@@ -58,7 +58,7 @@ DeviceCounts record(const World& world, double duration_s, const std::filesystem
   write_truth(truth_path_of(path), world);
 
   DeviceCounts counts;
-  TrackerDevice tracker(world);
+  TrackerLink tracker(world);
   SimulatedDatagram datagram;
   tracker.next(datagram);
   const auto write_datagrams_until = [&](std::int64_t until_ns) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drivers/dtrack/frame.hpp"
+#include "drivers/simulator/sight_noise.hpp"
 #include "drivers/simulator/world.hpp"
 
 namespace handeye::simulator {
@@ -17,8 +18,8 @@ struct SimulatedDatagram {
 };
 
 /// An optical tracker that watches the body on the scope: measures at its own clock's pace, with
-/// noise, and sends each measurement late by a constant and a non-negative jitter, in order. The
-/// world must outlive it.
+/// noise, and sends each measurement late by a constant and a non-negative jitter, in order. What
+/// becomes of a datagram on its way: TrackerLink. The world must outlive it.
 class TrackerDevice {
  public:
   explicit TrackerDevice(const World& world);
@@ -27,10 +28,13 @@ class TrackerDevice {
   void next(SimulatedDatagram& datagram);
 
  private:
-  Pose measure(const Pose& room_from_hand);
+  void tell_time(double measured_s);
+  void tell_covariance(double measured_s);
+  Pose measure(const Pose& room_from_hand, double measured_s);
 
   const World* world_;
   RandomStream noise_;
+  SightNoise sight_;
   RandomStream arrivals_;
   double phase_;  ///< first measurement, in sampling periods
   std::uint32_t first_number_;

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,39 @@ nlohmann::ordered_json camera_json(const CameraModel& camera) {
           {"cy", camera.cy},
           {"distortion", camera.distortion},
           {"source", "given"}};
+}
+
+}  // namespace
+
+namespace {
+
+constexpr std::string_view timestamps_word(Timestamps timestamps) {
+  switch (timestamps) {
+    case Timestamps::kUnixTime:
+      return "ts2";
+    case Timestamps::kNone:
+      return "none";
+    case Timestamps::kSecondsOfDay:
+      break;
+  }
+  return "ts";
+}
+
+/// What was asked for beyond the usual; the file of a simulation without it names none of it.
+void add_faults(const World& world, nlohmann::ordered_json& truth) {
+  const SimulatorOptions& options = world.options;
+  if (!world.tracker_faults.empty()) truth["tracker_faults"] = spelling(world.tracker_faults);
+  if (!world.camera_faults.empty()) truth["camera_faults"] = spelling(world.camera_faults);
+  if (options.midnight_s) truth["midnight_s"] = *options.midnight_s;
+  if (options.timestamps != Timestamps::kSecondsOfDay) {
+    truth["timestamps"] = timestamps_word(options.timestamps);
+  }
+  if (options.covariance) truth["covariance"] = true;
+  if (options.head_turn) {
+    truth["head_turn"] = spelling(*options.head_turn);
+    truth["hand_from_eye_after"] =
+        pose_json(world.hand_from_eye_at(std::numeric_limits<double>::infinity()));
+  }
 }
 
 }  // namespace
@@ -58,6 +93,7 @@ nlohmann::ordered_json truth_json(const World& world) {
       {"tracker_noise", {{"deg", options.tracker_noise_deg}, {"mm", options.tracker_noise_mm}}},
       {"room_from_surface", pose_json(world.room_from_surface)},
   };
+  add_faults(world, truth);
   if (options.board) {
     truth["scene"] = "board";
     truth["board"] = to_string(*options.board);

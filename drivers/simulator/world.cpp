@@ -67,20 +67,36 @@ World::World(const SimulatorOptions& chosen, std::int64_t start)
       surface(surface_of(chosen)),
       motion(chosen.seed, {0, 0, surface.height(0, 0)}, motion_options(chosen)),
       room_from_surface(draw_room_from_surface(chosen.seed)),
-      hand_from_eye(draw_hand_from_eye(chosen.seed)) {
+      hand_from_eye(draw_hand_from_eye(chosen.seed)),
+      tracker_faults(with_times(chosen.tracker_faults, chosen.seed)),
+      camera_faults(with_times(chosen.camera_faults, ~chosen.seed)) {
   RandomStream random(chosen.seed, Purpose::kClocks);
   tracker_latency_s = random.uniform(0.005, 0.025);
   tracker_clock_start_s = random.uniform(0.0, kSecondsADay);
   tracker_clock_drift = random.uniform(-50e-6, 50e-6);
   camera_delay_s = random.uniform(0.010, 0.060);
+  if (chosen.midnight_s) {
+    tracker_clock_start_s = kSecondsADay - (1.0 + tracker_clock_drift) * *chosen.midnight_s;
+  }
+}
+
+Pose World::surface_from_eye(double time_s) const {
+  const Pose surface_from_old_eye = motion.surface_from_eye(time_s);
+  return options.head_turn ? surface_from_old_eye * old_eye_from_eye(*options.head_turn, time_s)
+                           : surface_from_old_eye;
 }
 
 Pose World::room_from_eye(double time_s) const {
-  return room_from_surface * motion.surface_from_eye(time_s);
+  return room_from_surface * surface_from_eye(time_s);
 }
 
 Pose World::room_from_hand(double time_s) const {
-  return room_from_eye(time_s) * hand_from_eye.inverse();
+  return room_from_surface * motion.surface_from_eye(time_s) * hand_from_eye.inverse();
+}
+
+Pose World::hand_from_eye_at(double time_s) const {
+  return options.head_turn ? hand_from_eye * old_eye_from_eye(*options.head_turn, time_s)
+                           : hand_from_eye;
 }
 
 std::optional<Pose> World::room_from_board() const {
@@ -90,7 +106,13 @@ std::optional<Pose> World::room_from_board() const {
 }
 
 double World::tracker_clock_s(double time_s) const {
-  return std::fmod(tracker_clock_start_s + (1.0 + tracker_clock_drift) * time_s, kSecondsADay);
+  const double of_day_s = std::fmod(tracker_day_s(time_s), kSecondsADay);
+  return of_day_s < 0 ? of_day_s + kSecondsADay : of_day_s;
+}
+
+double World::tracker_day_s(double time_s) const {
+  return tracker_clock_start_s + (1.0 + tracker_clock_drift) * time_s +
+         sum_until(tracker_faults, FaultKind::kClockJump, time_s);
 }
 
 std::int64_t World::host_ns(double time_s) const {

@@ -39,7 +39,7 @@ bool Sequence::next(SequenceFrame& frame) {
   const double exposed_s = view_.exposed_s(next_number_);
   frame.number = next_number_;
   frame.timestamp_ns = world_.host_ns(exposed_s + world_.camera_delay_s);
-  frame.scene_from_eye = world_.motion.surface_from_eye(exposed_s);
+  frame.scene_from_eye = world_.surface_from_eye(exposed_s);
   frame.frozen = fate.frozen(next_number_);
   frame.dark = fate.dark;
   view_.draw(next_number_, frame.grey);
@@ -50,7 +50,7 @@ bool Sequence::next(SequenceFrame& frame) {
 
 Pose Sequence::scene_from_eye(std::int64_t timestamp_ns) const {
   const double stamped_s = 1e-9 * static_cast<double>(timestamp_ns - world_.start_ns);
-  return world_.motion.surface_from_eye(stamped_s - world_.camera_delay_s);
+  return world_.surface_from_eye(stamped_s - world_.camera_delay_s);
 }
 
 std::optional<Eigen::Vector2d> true_pixel(const CameraModel& camera, const cv::Mat1f& depth_mm,

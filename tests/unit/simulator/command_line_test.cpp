@@ -82,6 +82,35 @@ TEST(CommandLine, RefusesDisturbancesItDoesNotKnow) {
   }
 }
 
+TEST(CommandLine, TakesWhatGoesWrongWithTheDevices) {
+  const SimulatorOptions options =
+      parse({"run", "--tracker-disturb", "occlusion@8=1.5,lost", "--camera-disturb", "stall@3",
+             "--midnight", "12", "--timestamps", "ts2", "--covariance", "--turn-head", "20:5"})
+          ->simulator;
+  EXPECT_EQ(spelling(options.tracker_faults), "occlusion@8=1.5,lost=0.08");
+  EXPECT_EQ(spelling(options.camera_faults), "stall@3=0.5");
+  EXPECT_EQ(options.midnight_s, 12.0);
+  EXPECT_EQ(options.timestamps, Timestamps::kUnixTime);
+  EXPECT_TRUE(options.covariance);
+  EXPECT_EQ(options.head_turn, (HeadTurn{20, 5, HeadTurn::About::kRoll}));
+
+  const SimulatorOptions usual = parse({"run"})->simulator;
+  EXPECT_TRUE(usual.tracker_faults.empty() && usual.camera_faults.empty());
+  EXPECT_FALSE(usual.midnight_s || usual.covariance || usual.head_turn);
+  EXPECT_EQ(usual.timestamps, Timestamps::kSecondsOfDay);
+}
+
+TEST(CommandLine, RefusesFaultsItDoesNotKnow) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"run", "--tracker-disturb", "stall"},
+                                             {"run", "--camera-disturb", "lost"},
+                                             {"run", "--timestamps", "ts3"},
+                                             {"run", "--midnight", "-1"},
+                                             {"run", "--turn-head", "5"}}) {
+    EXPECT_THROW(parse(words), UsageError) << words[1];
+  }
+}
+
 TEST(CommandLine, DrawsAnotherSeedWhereNoneIsGiven) {
   EXPECT_EQ(parse({"run", "--seed", "12"})->simulator.seed, 12U);
   EXPECT_NE(parse({"run"})->simulator.seed, parse({"run"})->simulator.seed);

@@ -31,7 +31,8 @@ void for_each_step(const Motion& motion, Check check) {
 
 TEST(Motion, NamesAreReadBack) {
   for (const auto kind : {MotionKind::kFree, MotionKind::kTranslation, MotionKind::kRotation,
-                          MotionKind::kSingleAxis, MotionKind::kPivot, MotionKind::kStatic}) {
+                          MotionKind::kSingleAxis, MotionKind::kPivot, MotionKind::kStatic,
+                          MotionKind::kWobble, MotionKind::kPivotSlide, MotionKind::kRollOnly}) {
     EXPECT_EQ(motion_from_name(motion_name(kind)), kind);
   }
   EXPECT_FALSE(motion_from_name("waltz").has_value());
@@ -68,7 +69,7 @@ TEST(Motion, FreeReachesItsLimitsAtAHandsSpeed) {
 TEST(Motion, ImagesMoveSlowlyEnoughToBeTracked) {
   const CameraModel camera{640, 480, 600, 600, 319.5, 239.5, {}};
   for (const auto kind : {MotionKind::kFree, MotionKind::kTranslation, MotionKind::kRotation,
-                          MotionKind::kSingleAxis, MotionKind::kPivot}) {
+                          MotionKind::kSingleAxis, MotionKind::kPivot, MotionKind::kPivotSlide}) {
     const Motion motion = motion_of(kind);
     double largest_px = 0;
     double sum_px = 0;
@@ -165,6 +166,50 @@ TEST(Motion, PivotKeepsItsPoint) {
     path_mm += (next.translation() - now.translation()).norm();
   });
   EXPECT_GT(path_mm, 200.0);
+}
+
+TEST(Motion, SlidingPivotSlidesThroughItsPoint) {
+  const Motion motion = motion_of(MotionKind::kPivotSlide);
+  const Motion pivoting = motion_of(MotionKind::kPivot);
+  const Eigen::Vector3d pivot = pivoting.surface_from_eye(0) * pivoting.pivot_in_eye();
+  double least_mm = 1e9;
+  double most_mm = 0;
+  for_each_step(motion, [&](const Pose& now, const Pose&) {
+    const Eigen::Vector3d pivot_in_eye = now.inverse() * pivot;
+    EXPECT_NEAR(pivot_in_eye.head<2>().norm(), 0.0, 1e-9) << "the scope leads through it";
+    least_mm = std::min(least_mm, -pivot_in_eye.z());
+    most_mm = std::max(most_mm, -pivot_in_eye.z());
+  });
+  EXPECT_NEAR(least_mm, 85.0, 1.0);
+  EXPECT_NEAR(most_mm, 115.0, 1.0);
+}
+
+TEST(Motion, WobbleIsLessThanTheTrackersNoise) {
+  const Motion motion = motion_of(MotionKind::kWobble);
+  const Pose first = motion.surface_from_eye(0);
+  double turned_deg = 0;
+  double moved_mm = 0;
+  for_each_step(motion, [&](const Pose& now, const Pose&) {
+    turned_deg =
+        std::max(turned_deg, deg_from_rad(rotation_angle_rad(now.linear(), first.linear())));
+    moved_mm = std::max(moved_mm, (now.translation() - first.translation()).norm());
+  });
+  EXPECT_LT(turned_deg, 0.07);
+  EXPECT_GT(turned_deg, 0.02);
+  EXPECT_LT(moved_mm, 0.14);
+  EXPECT_GT(moved_mm, 0.04);
+}
+
+TEST(Motion, RollKeepsTheOpticalAxis) {
+  const Motion motion = motion_of(MotionKind::kRollOnly);
+  const Pose first = motion.surface_from_eye(0);
+  double turned_deg = 0;
+  for_each_step(motion, [&](const Pose& now, const Pose& next) {
+    EXPECT_EQ(now.translation(), first.translation());
+    EXPECT_TRUE(now.linear().col(2).isApprox(first.linear().col(2), 1e-12));
+    turned_deg += deg_from_rad(rotation_angle_rad(now.linear(), next.linear()));
+  });
+  EXPECT_GT(turned_deg, 100.0);
 }
 
 TEST(Motion, StaticStays) {

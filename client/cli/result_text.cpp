@@ -40,14 +40,36 @@ std::string camera_text(const CalibrationResult& result) {
          lens_text(result);
 }
 
-/// The columns of the paper's tables.
+/// Whose answer it is, and by what it weighed what was seen.
+std::string answer_text(const CalibrationResult& result) {
+  std::string text = row("answer", printable(result.method));
+  if (result.hand_noise) {
+    std::string noise =
+        fmt::format("tracker {:.3f} deg, {:.3f} mm ({})", result.hand_noise->rotation_deg,
+                    result.hand_noise->translation_mm, printable(result.hand_noise->source));
+    if (result.image_noise_px > 0) {
+      noise += fmt::format("; images {:.3f} px", result.image_noise_px);
+    }
+    text += row("noise", noise);
+  }
+  return text;
+}
+
+/// A method's own sigma, in as many characters.
+std::string sigma_text(const MethodResult& method) {
+  if (!method.sigma) return fmt::format("{:>12}{:>12}", "", "");
+  return fmt::format("{:>12.4f}{:>12.3f}", method.sigma->rotation_deg,
+                     method.sigma->translation_mm);
+}
+
+/// The columns of the paper's tables, and what each says of its own uncertainty.
 std::string methods_text(const CalibrationResult& result, const Palette& palette) {
   if (result.methods.empty()) return "";
-  std::string text =
-      "\n  " +
-      palette.bold(fmt::format("{:<28}{:>14}{:>14}{:>12}{:>10}", "method", "translation %",
-                               "rotation deg", "rotation %", "time ms")) +
-      "\n";
+  std::string text = "\n  " +
+                     palette.bold(fmt::format("{:<28}{:>14}{:>14}{:>12}{:>12}{:>12}{:>10}",
+                                              "method", "translation %", "rotation deg",
+                                              "rotation %", "sigma deg", "sigma mm", "time ms")) +
+                     "\n";
   for (const MethodResult& method : result.methods) {
     const std::string name = printable(method.name);
     if (!method.solution) {
@@ -55,9 +77,9 @@ std::string methods_text(const CalibrationResult& result, const Palette& palette
       continue;
     }
     const Residuals& residuals = method.residuals;
-    text += fmt::format("  {:<28}{:>14.3f}{:>14.4f}{:>12.3f}{:>10.2f}\n", name,
+    text += fmt::format("  {:<28}{:>14.3f}{:>14.4f}{:>12.3f}{}{:>10.2f}\n", name,
                         residuals.translation_percent, residuals.rotation_deg,
-                        residuals.rotation_percent, method.time_ms);
+                        residuals.rotation_percent, sigma_text(method), method.time_ms);
   }
   return text + "\n";
 }
@@ -96,6 +118,7 @@ std::string result_text(const CalibrationResult& result, const Palette& palette)
     text += row("residual", fmt::format("{:.3f} px reprojection, {:.4f} deg, {:.3f} % translation",
                                         result.reprojection_px, result.residuals.rotation_deg,
                                         result.residuals.translation_percent));
+    text += answer_text(result);
     text += camera_text(result);
     text += methods_text(result, palette);
   }

@@ -78,6 +78,18 @@ void read_lcm(Section section, Config::Lcm& lcm) {
   section.reject_unknown_keys();
 }
 
+/// Whose word on the tracker's noise is taken.
+void read_noise(Section& section, Config::Tracker& tracker) {
+  constexpr std::array sources{HandNoiseSource::kMeasured, HandNoiseSource::kEstimated,
+                               HandNoiseSource::kGiven};
+  std::string word = "measured";
+  tracker.noise = sources.at(
+      read_choice(section, "noise", word,
+                  std::array<std::string_view, sources.size()>{"measured", "estimated", "given"}));
+  section.read("noise_rotation_deg", tracker.noise_rotation_deg, 1e-6, 10);
+  section.read("noise_translation_mm", tracker.noise_translation_mm, 1e-6, 100);
+}
+
 void read_tracker(Section section, Config::Tracker& tracker) {
   int port = tracker.port;
   section.read("port", port, 0, 65535);
@@ -87,8 +99,7 @@ void read_tracker(Section section, Config::Tracker& tracker) {
   read_address(section, "multicast_group", tracker.multicast_group);
   read_address(section, "controller", tracker.controller);
   section.read("body_id", tracker.body_id, 0, 999);
-  section.read("noise_rotation_deg", tracker.noise_rotation_deg, 1e-6, 10);
-  section.read("noise_translation_mm", tracker.noise_translation_mm, 1e-6, 100);
+  read_noise(section, tracker);
   section.reject_unknown_keys();
 }
 
@@ -135,6 +146,12 @@ void read_calibration(Section section, Config::Calibration& calibration) {
   section.reject_unknown_keys();
 }
 
+void read_camera_pose(Section section, Config::CameraPose& camera_pose) {
+  section.read("wait_ms", camera_pose.wait_ms, 0, 150);
+  section.read("predict_ms", camera_pose.predict_ms, 0, 200);
+  section.reject_unknown_keys();
+}
+
 void read_log(Section section, Config::Log& log) {
   read_choice(section, "level", log.level,
               std::array<std::string_view, 4>{"debug", "info", "warning", "error"});
@@ -142,7 +159,8 @@ void read_log(Section section, Config::Log& log) {
 }
 
 void reject_unknown_sections(const toml::table& root, const std::string& file) {
-  const std::set<std::string, std::less<>> known{"lcm", "tracker", "camera", "calibration", "log"};
+  const std::set<std::string, std::less<>> known{"lcm",         "tracker",     "camera",
+                                                 "calibration", "camera_pose", "log"};
   for (const auto& [key, node] : root) {
     if (known.contains(key.str())) continue;
     const std::string meant = nearest_word(key.str(), known);
@@ -163,6 +181,7 @@ Config load_config(const std::filesystem::path& path) {
   read_tracker(Section(root, "tracker", file), config.tracker);
   read_camera(Section(root, "camera", file), path.parent_path(), config.camera);
   read_calibration(Section(root, "calibration", file), config.calibration);
+  read_camera_pose(Section(root, "camera_pose", file), config.camera_pose);
   read_log(Section(root, "log", file), config.log);
   return config;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "daemon/geometry/intrinsics_mode.hpp"
+#include "daemon/handeye/one_step/one_step.hpp"
 #include "daemon/session/result.hpp"
 #include "protocol/channels.hpp"
 
@@ -25,7 +26,8 @@ struct Config {
     std::string multicast_group;  ///< empty: the tracker sends to this host alone
     std::string controller;       ///< address of the tracker's controller; empty: accept any
     int body_id{0};               ///< the body on the scope, the wire's number
-    double noise_rotation_deg{0.06};  ///< standard deviation per axis
+    HandNoiseSource noise{HandNoiseSource::kMeasured};  ///< estimated where nothing is measured
+    double noise_rotation_deg{0.06};                    ///< standard deviation per axis
     double noise_translation_mm{0.15};
   } tracker;
 
@@ -49,6 +51,12 @@ struct Config {
     double min_duration_s{8};
     double max_duration_s{30};
   } calibration;
+
+  /// CAMERA_POSE, once calibrated.
+  struct CameraPose {
+    double wait_ms{20};     ///< for the tracker's sample after a frame; then the hand is predicted
+    double predict_ms{60};  ///< that far beyond the newest sample at most; 0: never
+  } camera_pose;
 
   struct Log {
     std::string level{"info"};

@@ -7,6 +7,7 @@
 
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/geometry/intrinsics_mode.hpp"
+#include "daemon/geometry/lens_parameters.hpp"
 #include "daemon/geometry/pose.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 
@@ -84,6 +85,7 @@ struct Lens {
   IntrinsicsMode mode{IntrinsicsMode::kFixed};
   bool observable{true};  ///< false: the images do not tell; the camera must not be believed
   LensSigma sigma;        ///< all 0 where it was fixed
+  LensPrior prior;        ///< what was believed before the images; meaningless where it was fixed
   /// For each principal direction of its uncertainty: the keyframes of part 0 as they would be were
   /// the lens off by one standard deviation that way. Empty where it was fixed.
   std::vector<std::vector<RegisteredFrame>> shifted_keyframes;

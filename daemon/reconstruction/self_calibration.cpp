@@ -95,6 +95,7 @@ ReconstructionState SelfCalibration::add(const TrackedFrame& frame) {
 Reconstruction SelfCalibration::current() const {
   Reconstruction reconstruction = working_->current();
   reconstruction.lens.mode = mode_;
+  reconstruction.lens.prior = prior_;
   return reconstruction;
 }
 
@@ -102,6 +103,7 @@ Reconstruction SelfCalibration::finish() {
   if (!started_) look_for_start();
   Reconstruction reconstruction = settle();
   reconstruction.lens.mode = mode_;
+  reconstruction.lens.prior = prior_;
   judge_lens(reconstruction);
   return reconstruction;
 }

@@ -105,6 +105,7 @@ void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) 
                                    .camera = options_.camera,
                                    .intrinsics = options_.intrinsics,
                                    .noise = options_.noise,
+                                   .hand_noise = options_.hand_noise,
                                    .reconstruction = {}};
   Running running{.start = begin.start,
                   .number = begin.calibration,

@@ -26,6 +26,7 @@ class SolverThread {
     CameraModel camera;  ///< without a focal length: nothing is known of the lens
     IntrinsicsMode intrinsics{IntrinsicsMode::kFixed};
     PoseNoise noise;
+    HandNoiseSource hand_noise{HandNoiseSource::kMeasured};
     double min_duration_s{8};
   };
 

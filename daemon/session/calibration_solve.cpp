@@ -1,60 +1,128 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
+#include <cmath>
+#include <future>
 
 #include "daemon/session/calibration_snapshot.hpp"
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/lens_sensitivity.hpp"
 #include "daemon/session/method_comparison.hpp"
+#include "daemon/session/one_step_estimate.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "daemon/session/verdict.hpp"
 
 namespace handeye {
 namespace {
 
+constexpr std::string_view kOneStep = "one_step";
 constexpr std::string_view kStoodStillAdvice =
     "The scope stood still in every image, so the time offset between camera and tracker could not "
     "be found and was not needed: it was taken to be 0.";
 
-/// Every method's answer to the same poses; the last is the one that this calibration gives.
-std::vector<MethodResult> methods_of(const Estimate& estimate, const PoseNoise& noise) {
-  const std::vector<PosePair> pairs = poses_of_answer(estimate);
-  const std::span<const Method> all = methods(estimate.scale);
-  std::vector<MethodResult> results =
-      compare_methods(all.first(all.size() - 1), pairs, noise, estimate.scale);
-  MethodResult answer{.name = std::string(all.back().name)};
-  if (estimate.likelihood) {
-    answer.solution = estimate.likelihood->solution;
-    answer.residuals = seed_residuals(pairs, *answer.solution);
-    answer.time_ms = estimate.time_ms;
+MethodSigma sigma_of(const Matrix6d& covariance) {
+  return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
+}
+
+/// What one step does not wait for.
+struct Besides {
+  std::vector<MethodResult> methods;  ///< of the table; the last is the likelihood's
+  std::optional<Matrix6d> lens_covariance;
+};
+
+/// The methods of the table on the likelihood's poses, and what an uncertain lens adds to its
+/// answer.
+Besides look_besides(const CalibrationSnapshot& snapshot, const Estimate& found) {
+  Besides besides;
+  besides.lens_covariance = lens_covariance(snapshot.reconstruction, found, snapshot.hand);
+  const std::vector<PosePair> pairs = poses_of_answer(found);
+  const std::span<const Method> all = methods(found.scale);
+  ComparisonOptions comparison{.scale = found.scale, .noise = found.options.noise};
+  if (found.likelihood) {
+    // Errors that stay for some frames spoil their answers as they do the likelihood's.
+    comparison.sigma = true;
+    comparison.sigma_noise = found.likelihood->noise;
+    comparison.sigma_factor = std::sqrt(found.likelihood->correlation_inflation);
   }
-  results.push_back(std::move(answer));
-  return results;
+  besides.methods = compare_methods(all.first(all.size() - 1), pairs, comparison);
+  MethodResult& likelihood = besides.methods.emplace_back();
+  likelihood.name = all.back().name;
+  if (!found.likelihood) return besides;
+  likelihood.solution = found.likelihood->solution;
+  likelihood.residuals = seed_residuals(pairs, *likelihood.solution);
+  likelihood.time_ms = found.time_ms;
+  if (besides.lens_covariance) {
+    likelihood.sigma = sigma_of(found.likelihood->covariance + *besides.lens_covariance);
+  }
+  return besides;
+}
+
+MethodResult one_step_method(const OneStepEstimate& one_step, const Estimate& found) {
+  MethodResult method{.name = std::string(kOneStep), .solution = one_step.solution};
+  method.residuals = seed_residuals(poses_of_answer(found), one_step.solution);
+  method.time_ms = one_step.time_ms;
+  method.sigma = sigma_of(one_step.result.covariance);
+  return method;
 }
 
 void write_covariance(const Matrix6d& covariance, CalibrationResult& result) {
   result.covariance = covariance;
-  result.sigma_rotation_deg = sigma_rotation_deg(covariance);
-  result.sigma_translation_mm = sigma_translation_mm(covariance);
+  const MethodSigma sigma = sigma_of(covariance);
+  result.sigma_rotation_deg = sigma.rotation_deg;
+  result.sigma_translation_mm = sigma.translation_mm;
 }
 
-void write_estimate(const Estimate& estimate, const PoseNoise& noise, CalibrationResult& result) {
-  result.methods = methods_of(estimate, noise);
-  if (estimate.correlation) {
-    result.time_offset_s = estimate.time_offset_s;
-    result.time_offset_sigma_s = estimate.time_offset_sigma_s;
+/// The likelihood's answer; where there is one in one step, that comes over it.
+void write_likelihood(const Estimate& found, CalibrationResult& result) {
+  if (found.correlation) {
+    result.time_offset_s = found.time_offset_s;
+    result.time_offset_sigma_s = found.time_offset_sigma_s;
   }
-  if (!estimate.likelihood) return;
+  if (!found.likelihood) return;
   result.has_estimate = true;
-  result.solution = estimate.likelihood->solution;
-  write_covariance(estimate.likelihood->covariance, result);
+  result.method = result.methods.back().name;
+  result.solution = found.likelihood->solution;
   result.residuals = result.methods.back().residuals;
+  result.hand_noise =
+      SampleNoise{.rotation_deg = deg_from_rad(found.likelihood->noise.hand_rotation_rad),
+                  .translation_mm = found.likelihood->noise.hand_translation_mm};
+  write_covariance(found.likelihood->covariance, result);
 }
 
-std::string advice_for(Reason reason, const std::optional<Board>& board, const Estimate& found) {
-  std::string advice = board ? reason_advice(reason, *board) : std::string(reason_advice(reason));
-  if (!found.stood_still || !found.likelihood) return advice;
-  if (!advice.empty()) advice += ' ';
-  return advice + std::string(kStoodStillAdvice);
+void write_one_step(const OneStepEstimate& one_step, const Estimate& found,
+                    const Reconstruction& reconstruction, CalibrationResult& result) {
+  result.methods.push_back(one_step_method(one_step, found));
+  result.method = kOneStep;
+  result.solution = one_step.solution;
+  result.residuals = result.methods.back().residuals;
+  if (found.correlation) {
+    result.time_offset_s = one_step.time_offset_s;
+    result.time_offset_sigma_s = one_step.result.time_offset_sigma_s;
+  }
+  result.hand_noise = hand_noise_of(one_step);
+  result.image_noise_px = one_step.result.image_noise_px;
+  if (!result.lens) return;
+  result.camera = one_step.result.camera;
+  result.lens->sigma = lens_sigma_of(one_step, reconstruction);
+}
+
+std::string advice_for(const Finding& finding, const std::optional<Board>& board,
+                       const Estimate& found) {
+  std::string advice =
+      board ? reason_advice(finding.reason, *board) : std::string(reason_advice(finding.reason));
+  if (found.stood_still && found.likelihood) {
+    if (!advice.empty()) advice += ' ';
+    advice += kStoodStillAdvice;
+  }
+  return advice;
+}
+
+void write_finding(const Finding& finding, const Estimate& found, const CalibrationOptions& options,
+                   CalibrationResult& result) {
+  if (finding.judgement && result.has_estimate) write_covariance(finding.covariance, result);
+  if (!finding.lens_known && result.lens) result.lens->observable = false;
+  result.reason = finding.reason;
+  result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
+  result.missing = word(finding.missing);
+  result.advice = advice_for(finding, options.start.board, found);
 }
 
 }  // namespace
@@ -62,31 +130,32 @@ std::string advice_for(Reason reason, const std::optional<Board>& board, const E
 SolvedCalibration solve(const CalibrationSnapshot& snapshot) {
   const Stopwatch stopwatch;
   const CalibrationOptions& options = snapshot.options;
-  SolvedCalibration outcome{snapshot.begun, {}};
-  CalibrationResult& result = outcome.result;
+  SolvedCalibration solved{snapshot.begun, {}};
+  CalibrationResult& result = solved.result;
   const Estimate found =
       estimate(snapshot.reconstruction.frames, snapshot.hand, options.noise, snapshot.scale);
-  write_estimate(found, options.noise, result);
-  outcome.lens_covariance = lens_covariance(snapshot.reconstruction, found, snapshot.hand);
+  // Neither sees anything of the other: two threads give what one would.
+  auto beside = std::async(std::launch::async, look_besides, std::cref(snapshot), std::cref(found));
+  const auto one_step =
+      estimate_in_one_step(snapshot.reconstruction, snapshot.hand, found, options.hand_noise);
+  Besides besides = beside.get();
+  result.methods = std::move(besides.methods);
+  solved.lens_covariance = besides.lens_covariance;
+  write_likelihood(found, result);
+  if (one_step) write_one_step(*one_step, found, snapshot.reconstruction, result);
   const Finding finding = conclude({.frames_received = result.frames.received,
                                     .images = snapshot.images,
                                     .hand_path = snapshot.hand_path,
                                     .reconstruction = snapshot.reconstruction,
                                     .estimate = found,
-                                    .one_step = std::nullopt,
-                                    .lens_covariance = outcome.lens_covariance,
+                                    .one_step = one_step,
+                                    .lens_covariance = solved.lens_covariance,
                                     .noise = options.noise,
                                     .wanted = options.start.wanted});
-  if (found.likelihood && finding.judgement) write_covariance(finding.covariance, result);
-  if (!finding.lens_known) {
-    outcome.lens_covariance.reset();
-    if (result.lens) result.lens->observable = false;
-  }
-  result.reason = finding.reason;
-  result.verdict = result.reason == Reason::kNone ? Verdict::kAccepted : Verdict::kRefused;
-  result.advice = advice_for(result.reason, options.start.board, found);
+  if (!finding.lens_known) solved.lens_covariance.reset();
+  write_finding(finding, found, options, result);
   result.timings_ms.handeye = stopwatch.elapsed_ms();
-  return outcome;
+  return solved;
 }
 
 }  // namespace handeye

@@ -21,8 +21,8 @@ MethodResult run(const Method& method, const HandEyeProblem& problem) {
 std::optional<MethodSigma> sigma_of(const Method& method, const HandEyeSolution& solution,
                                     std::span<const PosePair> poses, const Selection& selection,
                                     const ComparisonOptions& options) {
-  const auto covariance =
-      sandwich_covariance(method, poses, selection.pairs, solution, options.noise);
+  const PoseNoise noise = options.sigma_noise.value_or(options.noise);
+  const auto covariance = sandwich_covariance(method, poses, selection.pairs, solution, noise);
   if (!covariance || !covariance->allFinite()) return std::nullopt;
   return MethodSigma{options.sigma_factor * sigma_rotation_deg(*covariance),
                      options.sigma_factor * sigma_translation_mm(*covariance)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,8 @@ struct ComparisonOptions {
   ScaleMode scale{ScaleMode::kUnknown};
   PoseNoise noise;
   bool estimate_noise{true};
-  bool sigma{false};       ///< carry the noise through each method's equations to its own sigma
+  bool sigma{false};  ///< carry the noise through each method's equations to its own sigma
+  std::optional<PoseNoise> sigma_noise;  ///< of the poses, for that; nothing: the one above
   double sigma_factor{1};  ///< every sigma times this: by what the residuals exceed the noise
 };
 

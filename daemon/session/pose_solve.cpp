@@ -128,6 +128,7 @@ bool is_finite(const CalibrationResult& result) {
 void write_estimate(const Answer& answer, const Matrix6d& covariance,
                     std::span<const PosePair> poses, CalibrationResult& result) {
   result.has_estimate = true;
+  result.method = kAnswer;
   result.solution = answer.likelihood->solution;
   result.covariance = covariance;
   result.sigma_rotation_deg = sigma_rotation_deg(covariance);
@@ -135,8 +136,9 @@ void write_estimate(const Answer& answer, const Matrix6d& covariance,
   result.residuals = seed_residuals(poses, result.solution);
 }
 
-void write_verdict(MotionProblem problem, CalibrationResult& result) {
-  result.reason = reason_of(problem);
+void write_verdict(const Judgement& judgement, CalibrationResult& result) {
+  result.reason = reason_of(judgement.problem);
+  result.missing = word(judgement.missing);
   // A number that does not exist is never accepted, wherever it came from.
   if (result.reason == Reason::kNone && !(result.has_estimate && is_finite(result))) {
     result.reason = Reason::kUncertain;
@@ -179,7 +181,7 @@ PoseSolution solve_poses(std::span<const PosePair> poses, const PoseSolveOptions
       solution.noise_factor = excess_over_given(*answer.likelihood, solver);
     }
   }
-  write_verdict(judgement.problem, result);
+  write_verdict(judgement, result);
   result.methods = compare_methods(others_of(chosen), right,
                                    {.scale = options.scale,
                                     .noise = solution.noise,

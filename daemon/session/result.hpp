@@ -76,6 +76,13 @@ struct LensQuality {
   bool observable{false};
 };
 
+/// Of one sample of the tracker, standard deviations per axis, as an answer was weighted by.
+struct SampleNoise {
+  double rotation_deg{0};
+  double translation_mm{0};
+  std::string source{"estimated"};  ///< given, measured (6dcov), estimated (from the residuals)
+};
+
 /// Everything a calibration says; the fields of the result JSON and of result_t.
 struct CalibrationResult {
   std::int64_t request_id{0};
@@ -83,10 +90,14 @@ struct CalibrationResult {
   Verdict verdict{Verdict::kRefused};
   Reason reason{Reason::kNone};
   std::string advice;
+  /// Refused: the motion that would help most, word(MissingMotion); empty: none would, or none is
+  /// known to.
+  std::string missing;
   WantedSigma wanted;
   std::optional<Board> board;  ///< the eye's poses came from it; nothing: from a reconstruction
 
   bool has_estimate{false};  ///< false: the block below is meaningless
+  std::string method;        ///< whose answer it is: a name of `methods`
   HandEyeSolution solution;
   Matrix6d covariance{
       Matrix6d::Zero()};  ///< of (w [rad], dt [mm]): R = Exp(w) R_est, t = t_est + dt
@@ -100,7 +111,9 @@ struct CalibrationResult {
   std::optional<LensQuality> lens;     ///< nothing: given
   Residuals residuals;
   double reprojection_px{0};
-  std::vector<MethodResult> methods;
+  std::optional<SampleNoise> hand_noise;  ///< nothing: there was no answer to weigh
+  double image_noise_px{0};             ///< of a feature, per axis; 0: not estimated
+  std::vector<MethodResult> methods;    ///< the answer's is the last
 
   struct Frames {
     std::int64_t received{0}, used{0}, keyframes{0}, dropped{0};

@@ -85,9 +85,27 @@ Json method_json(const MethodResult& method) {
   return json;
 }
 
+/// By what the answer was weighted; null where that is not known.
+void add_noise(Json& json, const CalibrationResult& result) {
+  json["hand_noise"] = nullptr;
+  if (result.hand_noise) {
+    json["hand_noise"] = {{"rotation_deg", number(result.hand_noise->rotation_deg)},
+                          {"translation_mm", number(result.hand_noise->translation_mm)},
+                          {"source", result.hand_noise->source}};
+  }
+  json["image_noise_px"] =
+      result.image_noise_px > 0 ? number(result.image_noise_px) : Json(nullptr);
+}
+
+/// A word, or null where there is none.
+Json word_or_null(std::string_view word) {
+  return word.empty() ? Json(nullptr) : Json(word);
+}
+
 /// The estimate and what speaks for it; all null where there is none.
 void add_estimate(Json& json, const CalibrationResult& result) {
   const bool has = result.has_estimate;
+  json["method"] = has ? word_or_null(result.method) : Json(nullptr);
   json["hand_from_eye"] = has ? pose_json(result.solution.hand_from_eye) : Json(nullptr);
   json["covariance"] = has ? covariance_json(result.covariance) : Json(nullptr);
   json["sigma_rotation_deg"] = has ? number(result.sigma_rotation_deg) : Json(nullptr);
@@ -112,6 +130,7 @@ Json to_json(const CalibrationResult& result) {
   json["reason"] =
       result.reason == Reason::kNone ? Json(nullptr) : Json(reason_word(result.reason));
   json["advice"] = result.advice;
+  json["missing"] = word_or_null(result.missing);
   json["request_id"] = result.request_id;
   json["body_id"] = result.body_id;
   json["wanted_sigma"] = {{"rotation_deg", result.wanted.rotation_deg},
@@ -122,6 +141,7 @@ Json to_json(const CalibrationResult& result) {
   json["camera"] = camera_json(result);
   json["residuals"] = residuals_json(result.residuals);
   json["residuals"]["reprojection_px"] = number(result.reprojection_px);
+  add_noise(json, result);
   json["methods"] = Json::array();
   for (const MethodResult& method : result.methods) json["methods"].push_back(method_json(method));
   json["frames"] = {{"received", result.frames.received},

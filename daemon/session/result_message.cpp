@@ -11,6 +11,8 @@ namespace {
 // What result_t says where there is nothing to say.
 constexpr double kNoTimeOffset = 0;
 constexpr double kNoTimeOffsetSigma = -1;
+// And where a method's own sigma is not known.
+constexpr double kNoSigma = -1;
 // The source of a lens of which no more is said.
 constexpr std::string_view kGivenLens = "given";
 
@@ -37,6 +39,8 @@ method_result_t method_message(const MethodResult& method) {
   message.name = method.name;
   message.solved = method.solution.has_value();
   message.time_ms = method.time_ms;
+  message.sigma_rotation_deg = method.sigma ? method.sigma->rotation_deg : kNoSigma;
+  message.sigma_translation_mm = method.sigma ? method.sigma->translation_mm : kNoSigma;
   if (!method.solution) return message;
   write_pose(method.solution->hand_from_eye, message.q_wxyz, message.t_mm);
   message.scale_units_per_mm = method.solution->scale_units_per_mm;
@@ -57,6 +61,9 @@ MethodResult method_from_message(const method_result_t& message) {
     method.residuals = {message.residual_rotation_deg, message.residual_rotation_percent,
                         message.residual_translation_percent,
                         message.residual_translation_norm_percent};
+  }
+  if (message.sigma_rotation_deg >= 0 && message.sigma_translation_mm >= 0) {
+    method.sigma = MethodSigma{message.sigma_rotation_deg, message.sigma_translation_mm};
   }
   return method;
 }
@@ -95,6 +102,21 @@ void read_camera(const result_t& message, CalibrationResult& result) {
                                       .k2 = message.lens_sigma_k2,
                                       .distortion_px = message.lens_sigma_distortion_px},
                             .observable = message.lens_observable != 0};
+}
+
+void write_noise(const CalibrationResult& result, result_t& message) {
+  message.image_noise_px = result.image_noise_px;
+  if (!result.hand_noise) return;
+  message.hand_noise_rotation_deg = result.hand_noise->rotation_deg;
+  message.hand_noise_translation_mm = result.hand_noise->translation_mm;
+  message.hand_noise_source = result.hand_noise->source;
+}
+
+void read_noise(const result_t& message, CalibrationResult& result) {
+  result.image_noise_px = message.image_noise_px;
+  if (message.hand_noise_source.empty()) return;
+  result.hand_noise = SampleNoise{message.hand_noise_rotation_deg, message.hand_noise_translation_mm,
+                                message.hand_noise_source};
 }
 
 void write_figures(const CalibrationResult& result, result_t& message) {
@@ -154,6 +176,8 @@ result_t to_message(const CalibrationResult& result) {
   message.verdict = verdict_code(result.verdict);
   message.reason = reason_word(result.reason);
   message.advice = result.advice;
+  message.missing = result.missing;
+  message.method = result.method;
   message.has_estimate = result.has_estimate;
   message.body_id = result.body_id;
   if (result.has_estimate) {
@@ -171,6 +195,7 @@ result_t to_message(const CalibrationResult& result) {
                                     ? result.time_offset_sigma_s.value_or(kNoTimeOffsetSigma)
                                     : kNoTimeOffsetSigma;
   write_camera(result, message);
+  write_noise(result, message);
   write_figures(result, message);
   for (const MethodResult& method : result.methods) {
     message.methods.push_back(method_message(method));
@@ -187,6 +212,8 @@ CalibrationResult from_message(const result_t& message) {
   result.verdict = verdict_from_code(message.verdict);
   result.reason = reason_from_word(message.reason);
   result.advice = message.advice;
+  result.missing = message.missing;
+  result.method = message.method;
   result.wanted = {message.wanted_sigma_rotation_deg, message.wanted_sigma_translation_mm};
   result.has_estimate = message.has_estimate != 0;
   if (result.has_estimate) {
@@ -201,6 +228,7 @@ CalibrationResult from_message(const result_t& message) {
     result.time_offset_sigma_s = message.time_offset_sigma_s;
   }
   read_camera(message, result);
+  read_noise(message, result);
   read_figures(message, result);
   result.board = board_from_message(message.board);
   for (const method_result_t& method : message.methods) {

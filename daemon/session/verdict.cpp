@@ -18,15 +18,14 @@ bool with_board(const Evidence& evidence) {
   return evidence.estimate.scale == ScaleMode::kKnown;
 }
 
-/// Why there is nothing to solve from: the motion's fault before the images', unless there was a
-/// board to be seen whatever the motion.
-Reason reason_without_reconstruction(const Evidence& evidence) {
-  if (with_board(evidence)) return Reason::kTooFewFeatures;
+/// What the motion has to do with there being nothing to solve from: its fault comes before the
+/// images', unless there was a board to be seen whatever the motion.
+MotionProblem problem_without_reconstruction(const Evidence& evidence) {
+  if (with_board(evidence)) return MotionProblem::kNone;
   const bool no_parallax = evidence.reconstruction.state == ReconstructionState::kNoParallax;
   const MotionProblem problem =
       classify_hand_motion(evidence.hand_path, evidence.noise, no_parallax);
-  if (problem != MotionProblem::kNone) return reason_of(problem);
-  return no_parallax ? Reason::kNoParallax : Reason::kTooFewFeatures;
+  return problem == MotionProblem::kNone && no_parallax ? MotionProblem::kNoParallax : problem;
 }
 
 Judgement judged(const Evidence& evidence) {
@@ -34,7 +33,18 @@ Judgement judged(const Evidence& evidence) {
   options.wanted_rotation_deg = evidence.wanted.rotation_deg;
   options.wanted_translation_mm = evidence.wanted.translation_mm;
   options.solver = evidence.estimate.options;
-  return judge(evidence.estimate.observations, evidence.estimate.likelihood, options);
+  const Estimate& estimate = evidence.estimate;
+  if (!evidence.one_step) return judge(estimate.observations, estimate.likelihood, options);
+  return judge(estimate.observations, *estimate.likelihood,
+               {.hand_from_eye = evidence.one_step->solution.hand_from_eye,
+                .covariance = evidence.one_step->result.covariance},
+               options);
+}
+
+/// Of the answer, halves and lens included. In one step the lens was free: its share is in there.
+Matrix6d covariance_of(const Judgement& judgement, const Evidence& evidence) {
+  if (evidence.one_step) return judgement.covariance;
+  return judgement.covariance + evidence.lens_covariance.value_or(Matrix6d::Zero());
 }
 
 /// Whether the scope moved well enough, and the board was out of view while it did.
@@ -53,7 +63,7 @@ bool looked_past_board(const Evidence& evidence) {
 bool lens_is_known(const Evidence& evidence) {
   const Lens& lens = evidence.reconstruction.lens;
   if (lens.mode == IntrinsicsMode::kFixed) return true;
-  return lens.observable && evidence.lens_covariance &&
+  return lens.observable && (evidence.one_step || evidence.lens_covariance) &&
          !hand_contradicts_lens(evidence.estimate.observations);
 }
 
@@ -100,6 +110,35 @@ Reason or_the_images(Reason reason, const Evidence& evidence) {
   }
 }
 
+/// Whether another motion would have helped.
+bool blames_the_motion(Reason reason) {
+  switch (reason) {
+    case Reason::kNoMotion:
+    case Reason::kInsufficientRotation:
+    case Reason::kInsufficientTranslation:
+    case Reason::kNoParallax:
+    case Reason::kSingleAxis:
+    case Reason::kFixedPoint:
+    case Reason::kUncertain:
+      return true;
+    default:
+      return false;
+  }
+}
+
+Finding without_answer(Reason reason, MissingMotion missing = MissingMotion::kNone) {
+  return {.reason = reason,
+          .missing = blames_the_motion(reason) ? missing : MissingMotion::kNone,
+          .judgement = {}};
+}
+
+Finding without_reconstruction(const Evidence& evidence) {
+  const MotionProblem problem = problem_without_reconstruction(evidence);
+  const Reason reason =
+      problem == MotionProblem::kNone ? Reason::kTooFewFeatures : reason_of(problem);
+  return without_answer(or_the_images(reason, evidence), remedy(problem));
+}
+
 }  // namespace
 
 Reason reason_of(MotionProblem problem) {
@@ -123,22 +162,23 @@ Reason reason_of(MotionProblem problem) {
 }
 
 Finding conclude(const Evidence& evidence) {
-  if (evidence.frames_received == 0) return {Reason::kCameraLost, {}};
-  if (evidence.hand_path.empty()) return {Reason::kTrackerLost, {}};
+  if (evidence.frames_received == 0) return without_answer(Reason::kCameraLost);
+  if (evidence.hand_path.empty()) return without_answer(Reason::kTrackerLost);
   const std::size_t fewest = with_board(evidence) ? kFewestBoardPoses : kFewestPoses;
-  if (evidence.reconstruction.frames.size() < fewest) {
-    return {or_the_images(reason_without_reconstruction(evidence), evidence), {}};
-  }
-  if (evidence.estimate.observations.size() < fewest) return {Reason::kTrackerLost, {}};
+  if (evidence.reconstruction.frames.size() < fewest) return without_reconstruction(evidence);
+  if (evidence.estimate.observations.size() < fewest) return without_answer(Reason::kTrackerLost);
   const Judgement judgement = judged(evidence);
-  const Matrix6d covariance =
-      judgement.covariance + evidence.lens_covariance.value_or(Matrix6d::Zero());
+  const Matrix6d covariance = covariance_of(judgement, evidence);
   MotionProblem problem = judgement.problem;
   if (problem == MotionProblem::kNone && !is_wanted(covariance, evidence.wanted)) {
     problem = MotionProblem::kUncertain;
   }
-  return {or_the_images(reason_after(problem, evidence), evidence), judgement, covariance,
-          lens_is_known(evidence)};
+  const Reason reason = or_the_images(reason_after(problem, evidence), evidence);
+  return {.reason = reason,
+          .missing = blames_the_motion(reason) ? judgement.missing : MissingMotion::kNone,
+          .judgement = judgement,
+          .covariance = covariance,
+          .lens_known = lens_is_known(evidence)};
 }
 
 }  // namespace handeye

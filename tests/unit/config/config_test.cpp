@@ -55,6 +55,7 @@ bind_address = "10.0.0.2"
 multicast_group = "239.0.0.5"
 controller = "10.0.0.9"
 body_id = 4
+noise = "given"
 noise_rotation_deg = 0.1
 noise_translation_mm = 0.2
 [camera]
@@ -66,6 +67,9 @@ sigma_rotation_deg = 0.2
 sigma_translation_mm = 1
 min_duration_s = 5
 max_duration_s = 40.5
+[camera_pose]
+wait_ms = 12.5
+predict_ms = 0
 [log]
 level = "debug"
 )");
@@ -75,6 +79,7 @@ level = "debug"
   EXPECT_EQ(config.tracker.interface, "eth1");
   EXPECT_EQ(config.tracker.controller, "10.0.0.9");
   EXPECT_EQ(config.tracker.body_id, 4);
+  EXPECT_EQ(config.tracker.noise, HandNoiseSource::kGiven);
   EXPECT_DOUBLE_EQ(config.tracker.noise_translation_mm, 0.2);
   EXPECT_EQ(config.camera.driver, Config::Camera::Driver::kLcm);
   EXPECT_EQ(config.camera.intrinsics, file.path().parent_path() / "camera.json")
@@ -82,6 +87,8 @@ level = "debug"
   EXPECT_EQ(config.camera.mask, "/abs/mask.png");
   EXPECT_DOUBLE_EQ(config.calibration.wanted.translation_mm, 1.0) << "a whole number is a number";
   EXPECT_DOUBLE_EQ(config.calibration.max_duration_s, 40.5);
+  EXPECT_DOUBLE_EQ(config.camera_pose.wait_ms, 12.5);
+  EXPECT_DOUBLE_EQ(config.camera_pose.predict_ms, 0);
   EXPECT_EQ(config.log.level, "debug");
 }
 
@@ -89,9 +96,12 @@ TEST(Config, HasDefaultsForEverythingButTheIntrinsics) {
   const ConfigFile file("[camera]\nintrinsics = 'camera.json'\n");
   const Config config = load_config(file.path());
   EXPECT_EQ(config.tracker.port, 5000);
+  EXPECT_EQ(config.tracker.noise, HandNoiseSource::kMeasured);
   EXPECT_EQ(config.camera.driver, Config::Camera::Driver::kV4l2);
   EXPECT_EQ(config.lcm.prefix, kDefaultChannelPrefix);
   EXPECT_DOUBLE_EQ(config.calibration.wanted.rotation_deg, 0.3);
+  EXPECT_DOUBLE_EQ(config.camera_pose.wait_ms, 20);
+  EXPECT_DOUBLE_EQ(config.camera_pose.predict_ms, 60);
 }
 
 TEST(Config, NamesLineAndKeyOfAMistake) {
@@ -106,6 +116,13 @@ TEST(Config, NamesLineAndKeyOfAMistake) {
               HasSubstr("[calibration] sigma_rotation_deg: must be a number"));
   EXPECT_THAT(mistake_in(head + "[calibration]\nmin_duration_s = 50\n"),
               HasSubstr("min_duration_s: must not be above max_duration_s"));
+  EXPECT_THAT(mistake_in(head + "[camera_pose]\nwait_ms = -1\n"),
+              HasSubstr(":4: [camera_pose] wait_ms: must be a number from 0 to 150"));
+  EXPECT_THAT(mistake_in(head + "[camera_pose]\npredict_ms = 1000\n"),
+              HasSubstr("[camera_pose] predict_ms: must be a number from 0 to 200"));
+  EXPECT_THAT(mistake_in(head + "[camera_pose]\npredict = 10\n"),
+              HasSubstr("predict: is not a key; did you mean 'predict_ms'?"));
+  EXPECT_THAT(mistake_in(head + "[camera_poses]\n"), HasSubstr("did you mean [camera_pose]?"));
   EXPECT_THAT(mistake_in(head + "[lcm]\nprefix = 'a.*'\n"), HasSubstr(":4: [lcm] prefix"));
   EXPECT_THAT(mistake_in(head + "[tracker]\ncontroller = 'localhost'\n"),
               HasSubstr("must be an IPv4 address"));

@@ -19,7 +19,9 @@ CalibrationResult full_result() {
   result.verdict = Verdict::kRefused;
   result.reason = Reason::kFixedPoint;
   result.advice = std::string(reason_advice(Reason::kFixedPoint));
+  result.missing = "slide_in_and_out";
   result.has_estimate = true;
+  result.method = "one_step";
   result.solution.hand_from_eye =
       make_pose(Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5), Eigen::Vector3d(1.5, -2.5, 300));
   result.solution.scale_units_per_mm = 0.0125;
@@ -31,7 +33,11 @@ CalibrationResult full_result() {
   result.camera = {640, 480, 600, 601, 320, 240, {0.1, -0.2, 0.001, 0.002, 0.3}};
   result.residuals = {0.1, 2, 3, 4};
   result.reprojection_px = 0.31;
+  result.hand_noise = SampleNoise{0.06, 0.15, "measured"};
+  result.image_noise_px = 0.2;
   result.methods.push_back({"andreff", result.solution, {0.2, 3, 4, 5}, 1.5});
+  result.methods.push_back(
+      {"one_step", result.solution, {0.1, 2, 3, 4}, 80, MethodSigma{0.05, 0.3}});
   result.methods.push_back({"failed", std::nullopt, {}, 0.5});
   result.frames = {500, 490, 120, 3, 6, 4, 2, 9, 5};
   result.features = {250.5, 4321};
@@ -74,7 +80,29 @@ TEST(Result, WithoutAnEstimateCarriesNoNumbersThatCouldBeMistakenForOne) {
   EXPECT_TRUE(json["covariance"].is_null());
   EXPECT_TRUE(json["sigma_rotation_deg"].is_null());
   EXPECT_TRUE(json["time_offset_s"].is_null());
-  EXPECT_TRUE(json["methods"][1]["hand_from_eye"].is_null());
+  EXPECT_TRUE(json["method"].is_null());
+  EXPECT_TRUE(json["methods"][2]["hand_from_eye"].is_null());
+}
+
+TEST(Result, SaysByWhatTheAnswerWasWeighted) {
+  const auto json = to_json(from_message(to_message(full_result())));
+  EXPECT_EQ(json["method"], "one_step");
+  EXPECT_EQ(json["missing"], "slide_in_and_out");
+  EXPECT_EQ(json["hand_noise"]["rotation_deg"], 0.06);
+  EXPECT_EQ(json["hand_noise"]["translation_mm"], 0.15);
+  EXPECT_EQ(json["hand_noise"]["source"], "measured");
+  EXPECT_EQ(json["image_noise_px"], 0.2);
+  EXPECT_FALSE(json["methods"][0].contains("sigma")) << "it is not known";
+  EXPECT_EQ(json["methods"][1]["sigma"]["rotation_deg"], 0.05);
+  EXPECT_EQ(json["methods"][1]["sigma"]["translation_mm"], 0.3);
+}
+
+TEST(Result, HasNullWhereNoNoiseAndNoMotionIsNamed) {
+  const auto json = to_json(from_message(to_message(CalibrationResult{})));
+  for (const char* field : {"method", "missing", "hand_noise", "image_noise_px"}) {
+    ASSERT_TRUE(json.contains(field)) << field;
+    EXPECT_TRUE(json[field].is_null()) << field;
+  }
 }
 
 TEST(Result, JsonHasTheDocumentedShape) {

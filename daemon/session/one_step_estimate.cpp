@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/one_step_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "daemon/session/one_step_problem.hpp"
+#include "daemon/session/stopwatch.hpp"
+
+namespace handeye {
+namespace {
+
+// One step is linear in the offset within a few milliseconds; look up again beyond this.
+constexpr double kOffsetSettled_s = 0.0005;
+constexpr int kMostRounds = 3;
+
+/// Whether most of the frames that the hand was seen at have the tracker's own word on it.
+bool is_measured(const OneStepProblem& problem) {
+  const auto with_hand = std::ranges::count_if(
+      problem.frames, [](const OneStepFrame& frame) { return frame.hand.has_value(); });
+  const auto measured = std::ranges::count_if(problem.frames, [](const OneStepFrame& frame) {
+    return frame.hand && frame.hand->sample_covariance;
+  });
+  return measured > 0 && 2 * measured >= with_hand;
+}
+
+OneStepOptions options_for(const Lens& lens, const Estimate& start, HandNoiseSource hand_noise) {
+  OneStepOptions options;
+  if (lens.mode != IntrinsicsMode::kFixed) options.lens = lens.prior;
+  const bool estimated = hand_noise == HandNoiseSource::kEstimated;
+  const PoseNoise& noise = estimated ? start.likelihood->noise : start.options.noise;
+  options.hand_rotation_sigma_rad = noise.hand_rotation_rad;
+  options.hand_translation_sigma_mm = noise.hand_translation_mm;
+  options.hand_noise = hand_noise;
+  options.estimate_time_offset = start.options.estimate_time_offset;
+  return options;
+}
+
+/// Sum of the squared distances from their mean.
+double spread(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+  double sum = 0.0;
+  for (const Eigen::Vector3d& point : points) sum += (point - mean).squaredNorm();
+  return sum;
+}
+
+/// Scene units per mm of a part: its camera's path as reconstructed to its path in the room.
+std::optional<double> scale_of(int part, const Reconstruction& reconstruction,
+                               const OneStepResult& result) {
+  std::vector<Eigen::Vector3d> in_scene;
+  std::vector<Eigen::Vector3d> in_room;
+  for (std::size_t i = 0; i < reconstruction.frames.size(); ++i) {
+    const RegisteredFrame& frame = reconstruction.frames[i];
+    if (frame.part != part || !result.eye_from_room[i]) continue;
+    in_scene.emplace_back(frame.eye_from_scene.inverse().translation());
+    in_room.emplace_back(result.eye_from_room[i]->inverse().translation());
+  }
+  const double scale = std::sqrt(spread(in_scene) / spread(in_room));
+  if (!std::isfinite(scale) || scale <= 0) return std::nullopt;
+  return scale;
+}
+
+}  // namespace
+
+std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& reconstruction,
+                                                    const PoseBuffer& hand, const Estimate& start,
+                                                    HandNoiseSource hand_noise) {
+  if (!start.likelihood || start.scale == ScaleMode::kKnown) return std::nullopt;
+  const Stopwatch stopwatch;
+  OneStepEstimate estimate{.time_offset_s = start.time_offset_s, .hand_noise = hand_noise};
+  MaximumLikelihoodResult from = *start.likelihood;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const OneStepProblem problem = one_step_problem(reconstruction, hand, estimate.time_offset_s);
+    if (estimate.hand_noise == HandNoiseSource::kMeasured && !is_measured(problem)) {
+      estimate.hand_noise = HandNoiseSource::kEstimated;
+    }
+    const OneStepOptions options = options_for(reconstruction.lens, start, estimate.hand_noise);
+    auto found = one_step(problem, from, options);
+    if (!found) return std::nullopt;
+    estimate.result = std::move(*found);
+    const double correction_s = estimate.result.time_offset_correction_s;
+    estimate.time_offset_s += correction_s;
+    from.solution.hand_from_eye = estimate.result.hand_from_eye;
+    if (!options.estimate_time_offset || std::abs(correction_s) < kOffsetSettled_s) break;
+  }
+  const auto scale = scale_of(from.part, reconstruction, estimate.result);
+  estimate.solution = {estimate.result.hand_from_eye,
+                       scale.value_or(start.likelihood->solution.scale_units_per_mm)};
+  estimate.time_ms = stopwatch.elapsed_ms();
+  return estimate;
+}
+
+SampleNoise hand_noise_of(const OneStepEstimate& estimate) {
+  SampleNoise noise{.rotation_deg = deg_from_rad(estimate.result.hand_rotation_sigma_rad),
+                  .translation_mm = estimate.result.hand_translation_sigma_mm};
+  switch (estimate.hand_noise) {
+    case HandNoiseSource::kGiven:
+      noise.source = "given";
+      break;
+    case HandNoiseSource::kMeasured:
+      noise.source = "measured";
+      break;
+    case HandNoiseSource::kEstimated:
+      noise.source = "estimated";
+      break;
+  }
+  return noise;
+}
+
+LensSigma lens_sigma_of(const OneStepEstimate& estimate, const Reconstruction& reconstruction) {
+  const LensMatrix& covariance = estimate.result.lens_covariance;
+  const LensVector sigma = covariance.diagonal().cwiseSqrt();
+  LensSigma result{.focal_px = sigma[kFocal],
+                   .centre_px = std::max(sigma[kCentreX], sigma[kCentreY]),
+                   .k1 = sigma[kK1],
+                   .k2 = sigma[kK2]};
+  for (const ScenePoint& point : reconstruction.structure) {
+    for (const ScenePoint::Observation& seen : point.observations) {
+      const auto ray = unproject(estimate.result.camera, seen.pixel);
+      if (!ray) continue;
+      result.distortion_px = std::max(
+          result.distortion_px, distortion_sigma_px(estimate.result.camera, covariance, *ray));
+    }
+  }
+  return result;
+}
+
+}  // namespace handeye

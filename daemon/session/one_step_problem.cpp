@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/one_step_problem.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace handeye {
+namespace {
+
+std::optional<HandAtFrame> hand_at(std::int64_t timestamp_ns, const PoseBuffer& hand) {
+  const HandLookup found = hand.lookup(timestamp_ns);
+  if (found.status != LookupStatus::kOk) return std::nullopt;
+  return HandAtFrame{.room_from_hand = found.room_from_hand,
+                     .angular_velocity = found.angular_velocity,
+                     .velocity = found.velocity,
+                     .sample = found.sample,
+                     .fraction = found.fraction,
+                     .sample_covariance = found.sample_covariance};
+}
+
+bool is_placed_by_what_it_saw(const RegisteredFrame& frame) {
+  return frame.keyframe || !frame.unit_covariance.isZero(0.0);
+}
+
+OneStepPoint to_point(const ScenePoint& point) {
+  OneStepPoint result{.part = point.part, .point_scene = point.point_scene};
+  result.observations.reserve(point.observations.size());
+  for (const ScenePoint::Observation& seen : point.observations) {
+    result.observations.push_back({seen.frame, seen.pixel});
+  }
+  return result;
+}
+
+}  // namespace
+
+OneStepProblem one_step_problem(const Reconstruction& reconstruction, const PoseBuffer& hand,
+                                double time_offset_s) {
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
+  OneStepProblem problem{.camera = reconstruction.lens.camera};
+  problem.frames.reserve(reconstruction.frames.size());
+  for (const RegisteredFrame& frame : reconstruction.frames) {
+    OneStepFrame& one =
+        problem.frames.emplace_back(OneStepFrame{.eye_from_scene = frame.eye_from_scene,
+                                                 .part = frame.part,
+                                                 .keyframe = frame.keyframe,
+                                                 .unit_covariance = frame.unit_covariance});
+    if (is_placed_by_what_it_saw(frame)) one.hand = hand_at(frame.timestamp_ns - offset_ns, hand);
+  }
+  problem.points.reserve(reconstruction.structure.size());
+  for (const ScenePoint& point : reconstruction.structure) {
+    problem.points.push_back(to_point(point));
+  }
+  return problem;
+}
+
+}  // namespace handeye

@@ -39,8 +39,14 @@ SolverThread::Options solver_options(const Config& config, const CameraFiles& fi
       .camera = files.model, .intrinsics = config.camera.intrinsics_mode, .noise = {}};
   options.noise.hand_rotation_rad = rad_from_deg(config.tracker.noise_rotation_deg);
   options.noise.hand_translation_mm = config.tracker.noise_translation_mm;
+  options.hand_noise = config.tracker.noise;
   options.min_duration_s = config.calibration.min_duration_s;
   return options;
+}
+
+PosePublisherOptions pose_options(const Config::CameraPose& config) {
+  const auto ns = [](double duration_ms) { return static_cast<std::int64_t>(1e6 * duration_ms); };
+  return {.wait_ns = ns(config.wait_ms), .predict_ns = ns(config.predict_ms)};
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ Service::Service(const Config& config)
       session_({.body_id = config.tracker.body_id,
                 .wanted = config.calibration.wanted,
                 .max_duration_s = config.calibration.max_duration_s}),
-      tracker_(config.tracker, bus_, channels_),
+      tracker_(config.tracker, pose_options(config.camera_pose), bus_, channels_),
       camera_(make_camera(config, camera_files_.model), camera_files_.model,
               [this](const FrameStamp& stamp) { tracker_.frame_taken(stamp); }),
       vision_(camera_.frames(), bus_, vision_options(config, camera_files_, channels_)),
@@ -190,14 +196,17 @@ void Service::end_collecting() {
 }
 
 void Service::activate(const CalibrationResult& result) {
+  const SampleNoise noise = result.hand_noise.value_or(SampleNoise{
+      config_.tracker.noise_rotation_deg, config_.tracker.noise_translation_mm, "given"});
   tracker_.use({.request_id = result.request_id,
                 .accepted_ns = monotonic_ns(),
                 .body_id = result.body_id,
                 .hand_from_eye = result.solution.hand_from_eye,
                 .covariance = result.covariance,
                 .time_offset_ns = static_cast<std::int64_t>(1e9 * result.time_offset_s.value_or(0)),
-                .hand_rotation_sigma_rad = rad_from_deg(config_.tracker.noise_rotation_deg),
-                .hand_translation_sigma_mm = config_.tracker.noise_translation_mm});
+                .time_offset_sigma_s = result.time_offset_sigma_s.value_or(0),
+                .hand_noise = {.rotation_rad = rad_from_deg(noise.rotation_deg),
+                               .translation_mm = noise.translation_mm}});
   calibrated_request_id_ = result.request_id;
 }
 

@@ -2,7 +2,9 @@
 #include "daemon/service/tracker_thread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <poll.h>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -14,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Short enough to publish camera poses and to notice silence in time.
+// Short enough to notice silence, and the end, in time.
 constexpr milliseconds kWait{20};
 // A minute at 60 Hz, should the solver be that busy.
 constexpr std::size_t kHandSamples = 4096;
@@ -35,16 +37,19 @@ dtrack::ReceiverOptions receiver_options(const Config::Tracker& config) {
 
 }  // namespace
 
-TrackerThread::TrackerThread(const Config::Tracker& config, Bus& bus, const Channels& channels)
+TrackerThread::TrackerThread(const Config::Tracker& config,
+                             const PosePublisherOptions& camera_poses, Bus& bus,
+                             const Channels& channels)
     : config_(config),
       receiver_(receiver_options(config)),
       hand_stream_(config.body_id),
       frame_publisher_(bus, channels.tracker),
       datagram_publisher_(bus, channels.datagram),
-      pose_publisher_(bus, channels.camera_pose),
+      pose_publisher_(bus, channels.camera_pose, camera_poses),
       wanted_body_id_(config.body_id),
       hand_samples_(kHandSamples),
       calibrations_(4),
+      watch_words_(64),
       frame_stamps_(kFrameStamps) {
   health_.set(device_status_t::WAITING,
               fmt::format("waiting for packets on port {}", receiver_.port()));
@@ -61,11 +66,33 @@ void TrackerThread::begin_collecting(int body_id) {
 
 void TrackerThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    receiver_.receive(kWait, [this](const Datagram& datagram) { take(datagram); });
+    wait_for_work();
+    receiver_.receive(milliseconds(0), [this](const Datagram& datagram) { take(datagram); });
     while (const auto calibration = calibrations_.pop()) pose_publisher_.use(*calibration);
+    while (const auto word = watch_words_.pop()) pose_publisher_.hear(*word);
     while (const auto stamp = frame_stamps_.pop()) pose_publisher_.add_frame(*stamp);
     pose_publisher_.publish_ready(monotonic_ns());
   }
+}
+
+/// Until a datagram or a frame is there, or a camera pose is due without.
+void TrackerThread::wait_for_work() {
+  std::int64_t wait_ns = std::chrono::nanoseconds(kWait).count();
+  const std::int64_t now_ns = monotonic_ns();
+  if (const auto due_ns = pose_publisher_.due_ns(now_ns)) {
+    wait_ns = std::clamp<std::int64_t>(*due_ns - now_ns, 0, wait_ns);
+  }
+  std::array<pollfd, 2> waited_for{pollfd{receiver_.file_descriptor(), POLLIN, 0},
+                                   pollfd{frame_came_.file_descriptor(), POLLIN, 0}};
+  const timespec timeout{0, wait_ns};
+  if (ppoll(waited_for.data(), waited_for.size(), &timeout, nullptr) <= 0) return;
+  if ((waited_for[1].revents & POLLIN) != 0) frame_came_.clear();
+}
+
+void TrackerThread::frame_taken(FrameStamp stamp) {
+  stamp.arrival_ns = monotonic_ns();
+  frame_stamps_.push(stamp);
+  frame_came_.signal();
 }
 
 void TrackerThread::take(const Datagram& datagram) {

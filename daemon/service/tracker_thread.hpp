@@ -15,6 +15,7 @@
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/device_health.hpp"
 #include "daemon/service/pose_publisher.hpp"
+#include "daemon/service/wake_up.hpp"
 #include "daemon/session/hand_stream.hpp"
 #include "drivers/dtrack/receiver.hpp"
 #include "drivers/dtrack/stream_monitor.hpp"
@@ -25,11 +26,12 @@ namespace handeye {
 /// Receives the tracker's datagrams, and everything that must follow at once: parses, maps to the
 /// host's clock, publishes TRACKER (and DATAGRAM while recording), hands samples to the solver
 /// while collecting, publishes CAMERA_POSE once calibrated. Never waits for anything but the
-/// socket.
+/// socket and the next frame.
 class TrackerThread {
  public:
   /// Opens the socket: throws InputError when the port is in use. The thread starts with start().
-  TrackerThread(const Config::Tracker& config, Bus& bus, const Channels& channels);
+  TrackerThread(const Config::Tracker& config, const PosePublisherOptions& camera_poses, Bus& bus,
+                const Channels& channels);
 
   void start();
 
@@ -38,10 +40,12 @@ class TrackerThread {
   void end_collecting() { collecting_ = false; }
   /// From the main thread: publish CAMERA_POSE with this calibration.
   void use(const ActiveCalibration& calibration) { calibrations_.push(calibration); }
+  /// From one thread: whether that calibration still holds. The flags of CAMERA_POSE follow it.
+  void set_watch_state(const WatchWord& word) { watch_words_.push(word); }
   /// From the main thread: publish DATAGRAM until then.
   void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
   /// From the camera thread: a frame was taken.
-  void frame_taken(const FrameStamp& stamp) { frame_stamps_.push(stamp); }
+  void frame_taken(FrameStamp stamp);
 
   /// The solver's end of the samples of the hand.
   BoundedQueue<HandSample>& hand_samples() { return hand_samples_; }
@@ -52,6 +56,7 @@ class TrackerThread {
 
  private:
   void run(const std::stop_token& stop);
+  void wait_for_work();
   void take(const Datagram& datagram);
   void count_datagram();
   static body_t body_message(const dtrack::Body& body);
@@ -77,7 +82,9 @@ class TrackerThread {
       0};  ///< bit i: body i was tracked in the last datagram
   BoundedQueue<HandSample> hand_samples_;
   BoundedQueue<ActiveCalibration> calibrations_;
+  BoundedQueue<WatchWord> watch_words_;
   BoundedQueue<FrameStamp> frame_stamps_;
+  WakeUp frame_came_;
   std::jthread thread_;
 };
 

@@ -190,7 +190,45 @@ TEST_F(DaemonCommands, PoseStreamsLines) {
   EXPECT_EQ(first.at("validity"), "valid");
   EXPECT_EQ(first.at("room_from_eye").at("t_mm"), Json({0.0, -2.5, 0.0}));
   EXPECT_EQ(first.at("covariance").size(), 6u);
-  EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), 3);  // the head line and two poses
+  EXPECT_EQ(first.at("flags"), Json::array());
+  EXPECT_EQ(first.at("predicted_s"), 0);
+  EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), 4);  // two head lines, two poses
+}
+
+TEST_F(DaemonCommands, PoseNamesWhatIsNotToBeTrusted) {
+  Bus bus(provider_);
+  Publisher<camera_pose_t> publisher(bus, Channels().camera_pose);
+  std::atomic<bool> stop{false};
+  std::thread sender([&] {
+    while (!stop) {
+      camera_pose_t good{};
+      good.q_wxyz[0] = 1;
+      good.covariance[0] = good.covariance[7] = 2e-6;
+      good.covariance[35] = 0.25;
+      good.predicted_s = 0.0125;
+      good.flags = +camera_pose_t::FLAG_PREDICTED | +camera_pose_t::FLAG_CALIBRATION_BROKEN;
+      publisher.publish(good);
+      camera_pose_t hidden{};
+      hidden.validity = camera_pose_t::TRACKER_HIDDEN;
+      hidden.flags = camera_pose_t::FLAG_CALIBRATION_DOUBTFUL;
+      publisher.publish(hidden);
+      std::this_thread::sleep_for(milliseconds(5));
+    }
+  });
+  const Finished all = run({"pose", "--json", "--count", "4"});
+  const Finished valid = run({"pose", "--json", "--valid-only", "--count", "2"});
+  const Finished text = run({"pose", "--valid-only", "--count", "1"});
+  stop = true;
+  sender.join();
+  EXPECT_NE(all.out.find(R"("validity":"tracker_hidden","flags":["calibration_doubtful"])"),
+            std::string::npos)
+      << all.out;
+  EXPECT_EQ(valid.out.find("tracker_hidden"), std::string::npos);
+  const Json first = Json::parse(valid.out.substr(0, valid.out.find('\n')));
+  EXPECT_EQ(first.at("flags"), Json::array({"predicted", "calibration_broken"}));
+  EXPECT_EQ(first.at("predicted_s"), 0.0125);
+  EXPECT_NE(text.out.find("0.115 0.500 12.5 predicted,calibration_broken"), std::string::npos)
+      << text.out;
 }
 
 }  // namespace

@@ -55,17 +55,23 @@ Matrix6d some_covariance() {
   return square_root * square_root.transpose();
 }
 
-Matrix6d sampled_covariance(const Pose& room_from_hand, const ActiveCalibration& calibration) {
-  const Matrix6d square_root = calibration.covariance.llt().matrixL();
-  const Pose estimate = room_from_hand * calibration.hand_from_eye;
+/// The hand, `late_s` further on its way.
+Pose moved_on(const HandEstimate& hand, double late_s) {
+  Vector6d way;
+  way << hand.angular_velocity, hand.velocity;
+  return deviated(hand.room_from_hand, late_s * way);
+}
+
+Matrix6d sampled_covariance(const HandEstimate& hand, const ActiveCalibration& calibration) {
+  const Matrix6d calibration_root = calibration.covariance.llt().matrixL();
+  const Matrix6d hand_root = hand.covariance.llt().matrixL();
+  const Pose estimate = hand.room_from_hand * calibration.hand_from_eye;
   Noise noise;
   Matrix6d sum = Matrix6d::Zero();
   for (int draw = 0; draw < kDraws; ++draw) {
-    Vector6d hand_noise;
-    hand_noise << noise.vector(calibration.hand_rotation_sigma_rad),
-        noise.vector(calibration.hand_translation_sigma_mm);
-    const Pose pose = deviated(room_from_hand, hand_noise) *
-                      deviated(calibration.hand_from_eye, noise.correlated(square_root));
+    const Pose late = moved_on(hand, noise.vector(calibration.time_offset_sigma_s).x());
+    const Pose pose = deviated(late, noise.correlated(hand_root)) *
+                      deviated(calibration.hand_from_eye, noise.correlated(calibration_root));
     const Vector6d by = deviation(pose, estimate);
     sum += by * by.transpose();
   }
@@ -88,25 +94,58 @@ ActiveCalibration some_calibration() {
   calibration.hand_from_eye =
       make_pose(Eigen::Quaterniond(0.4, -0.5, 0.7, 0.2), Eigen::Vector3d(60, -40, 300));
   calibration.covariance = some_covariance();
-  calibration.hand_rotation_sigma_rad = 1e-3;
-  calibration.hand_translation_sigma_mm = 0.15;
+  calibration.time_offset_sigma_s = 1e-3;
   return calibration;
 }
 
-const Pose kRoomFromHand =
-    make_pose(Eigen::Quaterniond(0.3, 0.8, -0.1, 0.5), Eigen::Vector3d(1200, -300, 800));
+HandEstimate still_hand() {
+  HandEstimate hand;
+  hand.room_from_hand =
+      make_pose(Eigen::Quaterniond(0.3, 0.8, -0.1, 0.5), Eigen::Vector3d(1200, -300, 800));
+  hand.covariance = hand_sample_covariance({.rotation_rad = 1e-3, .translation_mm = 0.15});
+  return hand;
+}
+
+HandEstimate moving_hand() {
+  HandEstimate hand = still_hand();
+  hand.angular_velocity = {0.5, -0.8, 0.3};
+  hand.velocity = {-150, 60, 220};
+  return hand;
+}
 
 TEST(CameraPoseCovariance, IsThatOfBothNoisesTogether) {
   const ActiveCalibration calibration = some_calibration();
-  expect_agree(sampled_covariance(kRoomFromHand, calibration),
-               camera_pose_covariance(kRoomFromHand, calibration));
+  expect_agree(sampled_covariance(still_hand(), calibration),
+               camera_pose_covariance(still_hand(), calibration));
+}
+
+TEST(CameraPoseCovariance, TakesAHandThatIsKnownDifferentlyAlongEveryAxis) {
+  const ActiveCalibration calibration = some_calibration();
+  HandEstimate hand = moving_hand();
+  hand.covariance = some_covariance();
+  expect_agree(sampled_covariance(hand, calibration), camera_pose_covariance(hand, calibration));
+}
+
+TEST(CameraPoseCovariance, OfAMovingScopeCountsTheTimeOffset) {
+  ActiveCalibration calibration = some_calibration();
+  const Matrix6d moving = camera_pose_covariance(moving_hand(), calibration);
+  expect_agree(sampled_covariance(moving_hand(), calibration), moving);
+  // The eye's own velocity, which the lever turns into, times 1 ms.
+  const HandEstimate hand = moving_hand();
+  const Eigen::Vector3d eye_velocity =
+      hand.velocity + hand.angular_velocity.cross(hand.room_from_hand.linear() *
+                                                  calibration.hand_from_eye.translation());
+  const Matrix6d more = moving - camera_pose_covariance(still_hand(), calibration);
+  EXPECT_NEAR((more.bottomRightCorner<3, 3>().trace()), 1e-6 * eye_velocity.squaredNorm(), 1e-9);
+  EXPECT_NEAR((more.topLeftCorner<3, 3>().trace()), 1e-6 * hand.angular_velocity.squaredNorm(),
+              1e-12);
 }
 
 TEST(CameraPoseCovariance, OfThePerfectCalibrationIsTheTrackersAlone) {
   ActiveCalibration calibration = some_calibration();
   calibration.covariance = 1e-12 * Matrix6d::Identity();
-  const Matrix6d covariance = camera_pose_covariance(kRoomFromHand, calibration);
-  expect_agree(sampled_covariance(kRoomFromHand, calibration), covariance);
+  const Matrix6d covariance = camera_pose_covariance(still_hand(), calibration);
+  expect_agree(sampled_covariance(still_hand(), calibration), covariance);
   // Along the lever of 300 mm the rotation's noise of 1 mrad moves the camera by 0.3 mm.
   const double lever_mm = calibration.hand_from_eye.translation().norm();
   const double expected = 3 * 0.15 * 0.15 + 2 * 1e-6 * lever_mm * lever_mm;
@@ -114,12 +153,12 @@ TEST(CameraPoseCovariance, OfThePerfectCalibrationIsTheTrackersAlone) {
 }
 
 TEST(CameraPoseCovariance, OfAPerfectTrackerIsTheCalibrationsTurnedIntoTheRoom) {
-  ActiveCalibration calibration = some_calibration();
-  calibration.hand_rotation_sigma_rad = 0;
-  calibration.hand_translation_sigma_mm = 0;
-  const Matrix6d covariance = camera_pose_covariance(kRoomFromHand, calibration);
-  expect_agree(sampled_covariance(kRoomFromHand, calibration), covariance);
-  EXPECT_NEAR(covariance.trace(), calibration.covariance.trace(), 1e-9);
+  const ActiveCalibration calibration = some_calibration();
+  HandEstimate hand = still_hand();
+  hand.covariance = 1e-12 * Matrix6d::Identity();
+  const Matrix6d covariance = camera_pose_covariance(hand, calibration);
+  expect_agree(sampled_covariance(hand, calibration), covariance);
+  EXPECT_NEAR(covariance.trace(), calibration.covariance.trace(), 1e-6);
 }
 
 }  // namespace

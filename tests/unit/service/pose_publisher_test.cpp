@@ -38,14 +38,22 @@ class PosePublisherTest : public testing::Test {
         make_pose(Eigen::Quaterniond(0.4, -0.5, 0.7, 0.2), Eigen::Vector3d(60, -40, 300));
     calibration_.covariance = Matrix6d::Identity();
     calibration_.time_offset_ns = kOffset_ns;
+    calibration_.time_offset_sigma_s = 2e-3;
+    calibration_.hand_noise = {.rotation_rad = 0.001, .translation_mm = 0.15};
   }
 
   void add_hand(std::int64_t at_ms, bool tracked = true) {
     const std::int64_t tracker_ns = kStart_ns + at_ms * kMillisecond_ns;
-    publisher_.add_hand({tracker_ns, tracked, room_from_hand_at(tracker_ns)});
+    HandSample sample;
+    sample.timestamp_ns = tracker_ns;
+    sample.tracked = tracked;
+    sample.room_from_hand = room_from_hand_at(tracker_ns);
+    publisher_.add_hand(sample);
   }
-  /// A frame whose instant is at_ms on the tracker's time axis.
-  void add_frame(std::int64_t at_ms) { publisher_.add_frame({camera_ns(at_ms), at_ms}); }
+  /// A frame whose instant is at_ms on the tracker's time axis; it arrives at once.
+  void add_frame(std::int64_t at_ms) {
+    publisher_.add_frame({camera_ns(at_ms), at_ms, camera_ns(at_ms)});
+  }
   static std::int64_t camera_ns(std::int64_t at_ms) {
     return kStart_ns + at_ms * kMillisecond_ns + kOffset_ns;
   }
@@ -92,8 +100,15 @@ TEST_F(PosePublisherTest, InterpolatesTheHandToTheFramesInstant) {
   EXPECT_EQ(pose.frame_seq, 4);
   EXPECT_EQ(pose.calibration_request_id, 77);
   EXPECT_EQ(pose.calibration_age_s, 5);
-  const Matrix6d covariance =
-      camera_pose_covariance(room_from_hand_at(kStart_ns + 4 * kMillisecond_ns), calibration_);
+  // A quarter of the way from one sample to the next, by a hand of known velocity.
+  HandEstimate hand;
+  hand.room_from_hand = room_from_hand_at(kStart_ns + 4 * kMillisecond_ns);
+  hand.covariance = 0.625 * hand_sample_covariance(calibration_.hand_noise);
+  hand.angular_velocity = {0.2, -0.5, 0.3};
+  hand.velocity = {40, -10, 20};
+  const Matrix6d covariance = camera_pose_covariance(hand, calibration_);
+  EXPECT_EQ(pose.flags, 0);
+  EXPECT_EQ(pose.predicted_s, 0);
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
       EXPECT_NEAR(pose.covariance[6 * row + column], covariance(row, column), 1e-9);
@@ -185,6 +200,94 @@ TEST_F(PosePublisherTest, ANewCalibrationForgetsTheOldOnesHand) {
   ASSERT_EQ(publish(40).size(), 1U);
   EXPECT_EQ(heard_.front().calibration_request_id, 78);
   EXPECT_EQ(heard_.front().frame_seq, 20);
+}
+
+TEST_F(PosePublisherTest, PredictsWhenTheSampleAfterTheFrameDoesNotComeSoon) {
+  publisher_.use(calibration_);
+  for (std::int64_t at_ms = 0; at_ms <= 160; at_ms += 16) add_hand(at_ms);
+  add_frame(180);
+  EXPECT_TRUE(publish(199).empty()) << "the sample after it may come";
+  EXPECT_EQ(publisher_.due_ns(camera_ns(199)), camera_ns(200));
+  ASSERT_EQ(publish(200).size(), 1U);
+  const camera_pose_t& pose = heard_.front();
+  EXPECT_EQ(pose.validity, camera_pose_t::VALID);
+  EXPECT_EQ(pose.flags, camera_pose_t::FLAG_PREDICTED);
+  EXPECT_NEAR(pose.predicted_s, 0.020, 1e-12);
+  const Pose expected =
+      room_from_hand_at(kStart_ns + 180 * kMillisecond_ns) * calibration_.hand_from_eye;
+  EXPECT_TRUE(pose_of(pose).isApprox(expected, 1e-6));
+  EXPECT_FALSE(publisher_.due_ns(camera_ns(200)).has_value());
+}
+
+TEST_F(PosePublisherTest, TakesTheSampleThatComesWhileTheFrameWaits) {
+  publisher_.use(calibration_);
+  for (std::int64_t at_ms = 0; at_ms <= 160; at_ms += 16) add_hand(at_ms);
+  add_frame(170);
+  EXPECT_TRUE(publish(180).empty());
+  add_hand(176);
+  ASSERT_EQ(publish(189).size(), 1U);
+  EXPECT_EQ(heard_.front().flags, 0);
+  EXPECT_EQ(heard_.front().predicted_s, 0);
+}
+
+TEST_F(PosePublisherTest, DoesNotPredictTooFar) {
+  publisher_.use(calibration_);
+  for (std::int64_t at_ms = 0; at_ms <= 160; at_ms += 16) add_hand(at_ms);
+  add_frame(221);
+  EXPECT_TRUE(publish(300).empty());
+  EXPECT_EQ(publisher_.due_ns(camera_ns(300)), camera_ns(421)) << "no busy waiting";
+  ASSERT_EQ(publish(421).size(), 1U);
+  expect_invalid(heard_.front(), camera_pose_t::TRACKER_LATE);
+  EXPECT_EQ(heard_.front().flags, 0);
+}
+
+TEST_F(PosePublisherTest, NeverPredictsFromAHiddenHand) {
+  publisher_.use(calibration_);
+  for (std::int64_t at_ms = 0; at_ms <= 160; at_ms += 16) add_hand(at_ms);
+  add_hand(176, false);
+  add_frame(180);
+  EXPECT_TRUE(publish(260).empty());
+  add_hand(192);
+  ASSERT_EQ(publish(270).size(), 1U);
+  expect_invalid(heard_.front(), camera_pose_t::TRACKER_HIDDEN);
+}
+
+TEST_F(PosePublisherTest, WaitsWherePredictionIsOff) {
+  PosePublisher publisher(bus_, kChannel, {.wait_ns = 0, .predict_ns = 0});
+  publisher.use(calibration_);
+  for (std::int64_t at_ms = 0; at_ms <= 160; at_ms += 16) {
+    const std::int64_t tracker_ns = kStart_ns + at_ms * kMillisecond_ns;
+    publisher.add_hand({tracker_ns, true, room_from_hand_at(tracker_ns)});
+  }
+  publisher.add_frame({camera_ns(170), 1, camera_ns(170)});
+  EXPECT_EQ(publisher.due_ns(camera_ns(170)), camera_ns(370));
+  publisher.publish_ready(camera_ns(369));
+  EXPECT_TRUE(publish(0).empty());
+  publisher.publish_ready(camera_ns(370));
+  ASSERT_EQ(publish(0).size(), 1U);
+  expect_invalid(heard_.front(), camera_pose_t::TRACKER_LATE);
+}
+
+TEST_F(PosePublisherTest, SaysWhetherTheCalibrationIsStillTrusted) {
+  publisher_.use(calibration_);
+  const auto flags_after = [&](const WatchWord& word, std::int64_t at_ms) {
+    publisher_.hear(word);
+    add_hand(at_ms);
+    add_frame(at_ms);
+    return publish(at_ms).back().flags;
+  };
+  EXPECT_EQ(flags_after({77, status_t::WATCH_HOLDS}, 0), 0);
+  EXPECT_EQ(flags_after({77, status_t::WATCH_DOUBTFUL}, 16),
+            camera_pose_t::FLAG_CALIBRATION_DOUBTFUL);
+  EXPECT_EQ(flags_after({77, status_t::WATCH_BROKEN}, 32), camera_pose_t::FLAG_CALIBRATION_BROKEN);
+  EXPECT_EQ(heard_.back().validity, camera_pose_t::VALID) << "it is still what calibration says";
+  EXPECT_EQ(flags_after({76, status_t::WATCH_BROKEN}, 48), 0) << "of another calibration";
+  // Told before the publisher knew of the calibration.
+  publisher_.hear({78, status_t::WATCH_DOUBTFUL});
+  calibration_.request_id = 78;
+  publisher_.use(calibration_);
+  EXPECT_EQ(flags_after({78, status_t::WATCH_DOUBTFUL}, 64),
+            camera_pose_t::FLAG_CALIBRATION_DOUBTFUL);
 }
 
 }  // namespace

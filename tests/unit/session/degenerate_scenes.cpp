@@ -26,7 +26,7 @@ void cover_lens(SimulatorOptions& options) {
   options.disturbances.dark_s = 1.5;
 }
 
-const std::array<Scene, 15> kScenes{{
+const std::array<Scene, 18> kScenes{{
     {"plain", [](SimulatorOptions&) {}, {}},
     {"plane", [](SimulatorOptions& o) { o.scene = SceneKind::kPlane; }, {}},
     {"bare", [](SimulatorOptions& o) { o.scene = SceneKind::kBare; }, {}},
@@ -47,6 +47,11 @@ const std::array<Scene, 15> kScenes{{
      {Reason::kSingleAxis}},
     {"pivot", [](SimulatorOptions& o) { o.motion = MotionKind::kPivot; }, {Reason::kFixedPoint}},
     {"static", [](SimulatorOptions& o) { o.motion = MotionKind::kStatic; }, {Reason::kNoMotion}},
+    {"wobble", [](SimulatorOptions& o) { o.motion = MotionKind::kWobble; }, {Reason::kNoMotion}},
+    {"roll_only",
+     [](SimulatorOptions& o) { o.motion = MotionKind::kRollOnly; },
+     {Reason::kNoParallax}},
+    {"pivot_slide", [](SimulatorOptions& o) { o.motion = MotionKind::kPivotSlide; }, {}},
     {"rotation_of_plane",
      [](SimulatorOptions& o) {
        o.motion = MotionKind::kRotation;
@@ -130,12 +135,16 @@ bool is_right(const Scene& scene, const Trial& trial) {
 
 std::string describe(const Trial& trial) {
   const CalibrationResult& result = trial.result;
-  if (!result.has_estimate) return fmt::format("refused, {}", reason_word(result.reason));
-  return fmt::format(
-      "{} {:.3f} deg (sigma {:.3f}), {:.2f} mm (sigma {:.2f}), {} of {} frames",
-      trial.accepted() ? "accepted" : fmt::format("refused, {},", reason_word(result.reason)),
-      trial.rotation_error_deg, result.sigma_rotation_deg, trial.translation_error_mm,
-      result.sigma_translation_mm, result.frames.used, result.frames.received);
+  if (!result.has_estimate) {
+    return fmt::format("refused, {} ({})", reason_word(result.reason), result.missing);
+  }
+  return fmt::format("{} {} {:.3f} deg (sigma {:.3f}), {:.2f} mm (sigma {:.2f}), {} of {} frames",
+                     trial.accepted() ? "accepted"
+                                      : fmt::format("refused, {} ({}),", reason_word(result.reason),
+                                                    result.missing),
+                     result.method, trial.rotation_error_deg, result.sigma_rotation_deg,
+                     trial.translation_error_mm, result.sigma_translation_mm, result.frames.used,
+                     result.frames.received);
 }
 
 }  // namespace handeye::degenerate

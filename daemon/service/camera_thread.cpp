@@ -21,6 +21,8 @@ constexpr std::size_t kFramesInFlight = 8;
 constexpr milliseconds kGrabTimeout{200};
 constexpr milliseconds kFirstPause{250};
 constexpr milliseconds kLongestPause{2000};
+// STATUS goes out five times a second.
+constexpr std::int64_t kClockReportPeriod_ns = 100'000'000;
 
 /// Sleeps, but not beyond a request to stop.
 void pause(const std::stop_token& stop, milliseconds duration) {
@@ -74,6 +76,7 @@ bool CameraThread::open(const std::stop_token& stop) {
 
 void CameraThread::stream(const std::stop_token& stop) {
   std::optional<bool> said_usable;
+  clock_.restart();
   while (!stop.stop_requested()) {
     if (next_ == nullptr) next_ = frames_.acquire();
     Frame& frame = next_ != nullptr ? *next_ : overflow_;
@@ -95,8 +98,29 @@ void CameraThread::stream(const std::stop_token& stop) {
       continue;
     }
     health_.last_ns = monotonic_ns();
-    hand_on(frame);
+    if (stamp(frame)) {
+      hand_on(frame);
+    } else {
+      ++wrong_time_;
+    }
+    report_clock(health_.last_ns);
   }
+}
+
+/// Puts the time of the host's clock into the frame; false: it is not known.
+bool CameraThread::stamp(Frame& frame) {
+  const FrameTime time = clock_.observe(frame.timestamp_ns, frame.arrival_ns, frame.sequence);
+  frame.timestamp_ns = time.timestamp_ns;
+  return !time.doubtful;
+}
+
+void CameraThread::report_clock(std::int64_t now_ns) {
+  if (now_ns - clock_reported_ns_ < kClockReportPeriod_ns) return;
+  clock_reported_ns_ = now_ns;
+  const ClockReport report = clock_.report();
+  health_.set_clock(report);
+  if (report.jumps != jumps_) spdlog::warn("camera: the clock of its time stamps has jumped");
+  jumps_ = report.jumps;
 }
 
 void CameraThread::hand_on(const Frame& frame) {
@@ -130,7 +154,7 @@ void CameraThread::count() {
   const CameraCounters counters = camera_->counters();
   health_.received = static_cast<std::int64_t>(counters.received);
   health_.dropped = static_cast<std::int64_t>(counters.dropped);
-  health_.malformed = static_cast<std::int64_t>(counters.malformed) + wrong_size_;
+  health_.malformed = static_cast<std::int64_t>(counters.malformed) + wrong_size_ + wrong_time_;
   health_.restarts = counters.opened > 0 ? static_cast<std::int64_t>(counters.opened) - 1 : 0;
   health_.dropped_queue = static_cast<std::int64_t>(counters.dropped_queue + frames_.dropped());
 }

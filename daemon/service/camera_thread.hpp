@@ -10,12 +10,14 @@
 #include "daemon/service/device_health.hpp"
 #include "daemon/service/exchange.hpp"
 #include "daemon/service/pose_publisher.hpp"
+#include "daemon/sync/frame_clock.hpp"
 #include "drivers/camera.hpp"
 
 namespace handeye {
 
 /// Keeps the camera open, whatever happens to it, and hands its frames on: opens, grabs, and after
-/// a loss opens again with growing pauses. Frames that are not of the intrinsics' size are refused.
+/// a loss opens again with growing pauses. Frames that are not of the intrinsics' size are refused,
+/// as are those of which nobody knows when they were taken (FrameClock).
 class CameraThread {
  public:
   using FrameTaken = std::function<void(const FrameStamp&)>;
@@ -36,6 +38,8 @@ class CameraThread {
   void hand_on(const Frame& frame);
   bool has_right_size(const Frame& frame) const;
   void say(bool usable, const Frame& frame);
+  bool stamp(Frame& frame);
+  void report_clock(std::int64_t now_ns);
   void count();
 
   std::unique_ptr<Camera> camera_;
@@ -45,7 +49,11 @@ class CameraThread {
   Frame* next_{nullptr};  ///< acquired, to be filled next; null: all are with the consumer
   Frame overflow_;        ///< filled then instead: received, and dropped
   DeviceHealth health_;
+  FrameClock clock_;
+  std::int64_t clock_reported_ns_{0};
+  std::int64_t jumps_{0};  ///< of the camera's clock, as last said
   std::int64_t wrong_size_{0};
+  std::int64_t wrong_time_{0};
   std::jthread thread_;
 };
 

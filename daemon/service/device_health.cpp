@@ -8,7 +8,43 @@ namespace {
 
 constexpr std::int64_t kRateWindow_ns = 2'000'000'000;
 
+std::int32_t state_code(ClockState state) {
+  switch (state) {
+    case ClockState::kAbsent:
+      return clock_status_t::ABSENT;
+    case ClockState::kSettling:
+      return clock_status_t::SETTLING;
+    case ClockState::kSteady:
+      return clock_status_t::STEADY;
+    case ClockState::kUnstable:
+      return clock_status_t::UNSTABLE;
+  }
+  return clock_status_t::ABSENT;
+}
+
+std::string text_of(const ClockReport& report) {
+  if (report.state == ClockState::kUnstable) {
+    return report.jumps == 0 ? "the clock contradicts the times of arrival; looking again"
+                             : "the clock jumps; is its time being set?";
+  }
+  if (report.state == ClockState::kSettling) return "being found";
+  if (report.backwards > 0) return fmt::format("{} stamps went back", report.backwards);
+  return "";
+}
+
 }  // namespace
+
+clock_status_t clock_status(const ClockReport& report) {
+  clock_status_t status{};
+  status.state = state_code(report.state);
+  status.text = text_of(report);
+  status.drift_ppm = report.drift_ppm;
+  status.jitter_ms = report.jitter_ms;
+  status.span_s = report.span_s;
+  status.jumps = report.jumps;
+  status.midnights = report.midnights;
+  return status;
+}
 
 device_status_t DeviceStatusReporter::report(const DeviceHealth& health, std::int64_t now_ns) {
   device_status_t status{};
@@ -18,6 +54,8 @@ device_status_t DeviceStatusReporter::report(const DeviceHealth& health, std::in
   status.dropped_queue = health.dropped_queue;
   status.malformed = health.malformed;
   status.restarts = health.restarts;
+  status.reordered = health.reordered;
+  status.clock = clock_status(health.clock());
 
   history_.emplace_back(now_ns, status.received);
   while (history_.size() > 2 && now_ns - history_[1].first >= kRateWindow_ns) history_.pop_front();

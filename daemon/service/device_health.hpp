@@ -10,6 +10,8 @@
 
 #include <handeye/device_status_t.hpp>
 
+#include "daemon/sync/clock_report.hpp"
+
 namespace handeye {
 
 /// What a device's thread says about it, for STATUS: counters are atomic, the text changes rarely.
@@ -20,6 +22,7 @@ class DeviceHealth {
   std::atomic<std::int64_t> dropped_queue{0};
   std::atomic<std::int64_t> malformed{0};
   std::atomic<std::int64_t> restarts{0};
+  std::atomic<std::int64_t> reordered{0};
   std::atomic<std::int64_t> last_ns{0};  ///< CLOCK_MONOTONIC of the last datum; 0: none yet
 
   /// `state`: a constant of device_status_t; `text`: one line for a person.
@@ -33,11 +36,25 @@ class DeviceHealth {
     return {state_, text_};
   }
 
+  /// From the device's thread; some ten times a second suffice.
+  void set_clock(const ClockReport& clock) {
+    const std::scoped_lock lock(mutex_);
+    clock_ = clock;
+  }
+  ClockReport clock() const {
+    const std::scoped_lock lock(mutex_);
+    return clock_;
+  }
+
  private:
   mutable std::mutex mutex_;
+  ClockReport clock_;
   std::int32_t state_{device_status_t::WAITING};
   std::string text_;
 };
+
+/// In the words of STATUS.
+clock_status_t clock_status(const ClockReport& report);
 
 /// Turns a DeviceHealth into device_status_t, five times a second: adds rate, age and silence.
 class DeviceStatusReporter {

@@ -20,6 +20,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kWait{20};
 // A minute at 60 Hz, should the solver be that busy.
 constexpr std::size_t kHandSamples = 4096;
+// STATUS goes out five times a second.
+constexpr std::int64_t kClockReportPeriod_ns = 100'000'000;
 constexpr std::size_t kFrameStamps = 256;
 // Bodies beyond are tracked and published, only STATUS does not list them.
 constexpr std::int32_t kBodiesInStatus = 64;
@@ -103,11 +105,21 @@ void TrackerThread::take(const Datagram& datagram) {
     count_datagram();
     return;
   }
-  const dtrack::StreamEvent event = monitor_.observe(hand_stream_.frame().number);
+  monitor_.observe(hand_stream_.frame().number);
   count_datagram();
+  report_clock();
   publish_frame(datagram, *sample);
-  // One that others have overtaken would be out of order in every buffer behind.
-  if (event != dtrack::StreamEvent::kLate) distribute(*sample);
+  distribute(*sample);
+}
+
+void TrackerThread::report_clock() {
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_ns - clock_reported_ns_ < kClockReportPeriod_ns) return;
+  clock_reported_ns_ = now_ns;
+  const ClockReport report = hand_stream_.clock_report();
+  health_.set_clock(report);
+  if (report.jumps != jumps_) spdlog::warn("tracker: its clock has jumped");
+  jumps_ = report.jumps;
 }
 
 void TrackerThread::count_datagram() {
@@ -123,8 +135,10 @@ void TrackerThread::count_datagram() {
   health_.dropped_queue =
       static_cast<std::int64_t>(received.kernel_drops + hand_samples_.dropped());
   health_.malformed = static_cast<std::int64_t>(parsed.rejected_datagrams + parsed.rejected_lines +
-                                                parsed.rejected_bodies + received.empty);
+                                                parsed.rejected_bodies + received.empty +
+                                                hand_stream_.bad_covariances());
   health_.restarts = static_cast<std::int64_t>(monitor_.restarts());
+  health_.reordered = static_cast<std::int64_t>(monitor_.late());
 }
 
 void TrackerThread::publish_frame(const Datagram& datagram, const HandSample& sample) {
@@ -132,7 +146,7 @@ void TrackerThread::publish_frame(const Datagram& datagram, const HandSample& sa
   frame_message_.frame_number = frame.number;
   frame_message_.device_time_s = frame.seconds_of_day.value_or(-1);
   frame_message_.arrival_ns = datagram.arrival_ns;
-  frame_message_.timestamp_ns = sample.timestamp_ns;
+  frame_message_.timestamp_ns = sample.doubtful_time ? 0 : sample.timestamp_ns;
   frame_message_.bodies.resize(frame.bodies.size());
   frame_message_.num_bodies = static_cast<std::int32_t>(frame.bodies.size());
   std::uint64_t tracked = 0;
@@ -160,7 +174,7 @@ void TrackerThread::distribute(const HandSample& sample) {
   // Another body may be collected meanwhile than the one that is calibrated.
   pose_publisher_.add_hand(calibration->body_id == hand_stream_.body_id()
                                ? sample
-                               : hand_stream_.sample_of(calibration->body_id, sample.timestamp_ns));
+                               : hand_stream_.sample_of(calibration->body_id));
 }
 
 std::string TrackerThread::tracked_bodies() const {

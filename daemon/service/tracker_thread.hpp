@@ -59,6 +59,7 @@ class TrackerThread {
   void wait_for_work();
   void take(const Datagram& datagram);
   void count_datagram();
+  void report_clock();
   static body_t body_message(const dtrack::Body& body);
   void publish_frame(const Datagram& datagram, const HandSample& sample);
   void publish_datagram(const Datagram& datagram);
@@ -75,6 +76,8 @@ class TrackerThread {
   datagram_t datagram_message_{};
 
   DeviceHealth health_;
+  std::int64_t clock_reported_ns_{0};
+  std::int64_t jumps_{0};  ///< of the tracker's clock, as last said
   std::atomic<bool> collecting_{false};
   std::atomic<int> wanted_body_id_;
   std::atomic<std::int64_t> record_until_ns_{0};

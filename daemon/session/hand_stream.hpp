@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "daemon/sync/clock_model.hpp"
@@ -19,16 +20,20 @@ class HandStream {
 
   /// Nothing when the datagram was rejected. A body that is absent is hidden: `tracked` is false.
   /// From a sender that sends no device time (no ts, no ts2) the arrival stands for it; a single
-  /// datagram that lacks it is taken to be as late as the one before.
+  /// datagram that lacks it is taken to be as late as the one before, and its time is doubtful. A
+  /// sample of doubtful time is not tracked. Datagrams that were overtaken on the way come late.
   std::optional<HandSample> take(const Datagram& datagram);
 
-  /// Another body of the last datagram, as a sample.
-  HandSample sample_of(int body_id, std::int64_t timestamp_ns) const;
+  /// Another body of the last datagram, as a sample with the time of the last one taken.
+  HandSample sample_of(int body_id) const;
 
   /// What the last datagram said; empty after a rejected one.
   const dtrack::Frame& frame() const { return frame_; }
   const dtrack::ParseCounters& counters() const { return parser_.counters(); }
-  const ClockModel& clock() const { return clock_; }
+  /// The tracker's clock, whichever of its clocks is used. A few microseconds.
+  ClockReport clock_report() const;
+  /// Covariances (6dcov) that could not be meant, and were left out.
+  std::uint64_t bad_covariances() const { return bad_covariances_; }
   /// -1 as long as no body has been seen.
   int body_id() const { return body_id_; }
   void set_body_id(int body_id) { body_id_ = body_id; }
@@ -36,7 +41,8 @@ class HandStream {
  private:
   enum class DeviceClock { kUnknown, kNone, kSecondsOfDay, kUnixTime };
 
-  std::int64_t host_time_ns(std::int64_t arrival_ns);
+  void stamp(std::int64_t arrival_ns);
+  const dtrack::BodyCovariance* covariance_said_of(int body_id) const;
   void follow_device_clock();
   std::optional<double> device_time_s() const;
 
@@ -47,6 +53,10 @@ class HandStream {
   DeviceClock device_clock_{DeviceClock::kUnknown};
   int others_in_a_row_{0};       ///< datagrams whose time is of another kind, or missing
   std::int64_t lateness_ns_{0};  ///< arrival minus host time of the last that had a time
+  HandSample time_;              ///< of the last datagram: only what concerns time
+  std::int32_t first_epoch_{0};  ///< of clock_: those before belong to the clocks before
+  std::int64_t midnights_before_{0};
+  std::uint64_t bad_covariances_{0};
 };
 
 }  // namespace handeye

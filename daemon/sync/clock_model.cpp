@@ -8,6 +8,14 @@ namespace handeye {
 namespace {
 
 constexpr double kDay_s = 86400.0;
+// So many steady data exonerate a clock that its counter accuses, and so many are a burst's most.
+constexpr int kSteady = 3;
+// Before these the report says that the mapping, or its slope, is not yet known.
+constexpr double kSteadyAfter_s = 2.0;
+constexpr double kDriftAfter_s = 10.0;
+// Two jumps within this are no accident.
+constexpr double kUnstableFor_s = 60.0;
+constexpr double kJitterShare = 0.95;
 
 double seconds_from_ns(std::int64_t duration_ns) {
   return static_cast<double>(duration_ns) * 1e-9;
@@ -17,41 +25,52 @@ std::int64_t ns_from_seconds(double duration_s) {
   return std::llround(duration_s * 1e9);
 }
 
+/// Whether time passes alike on both clocks; data that a stalled network delivers all at once
+/// arrive together.
+bool arrives_apart(const LowerEnvelope::Point& before, const LowerEnvelope::Point& after) {
+  const double device_passed = after.device_s - before.device_s;
+  const double arrival_passed = device_passed + after.lateness_s - before.lateness_s;
+  return device_passed > 0 && arrival_passed >= 0.5 * device_passed;
+}
+
 }  // namespace
 
-ClockModel::ClockModel(const ClockModelOptions& options) : options_(options) {}
+ClockModel::ClockModel(const ClockModelOptions& options)
+    : options_(options), envelope_(options.window_s, options.max_drift), witness_(options.step_s) {}
 
-std::int64_t ClockModel::observe(double device_s, std::int64_t arrival_ns) {
-  if (!std::isfinite(device_s)) return arrival_ns;
+ClockReading ClockModel::observe(double device_s, std::int64_t arrival_ns,
+                                 std::optional<std::uint32_t> tick) {
+  if (!std::isfinite(device_s)) return {arrival_ns, true};
   if (!started_) start(device_s, arrival_ns);
 
-  const double device = unwrapped(device_s, arrival_ns) - origin_device_s_;
-  const double arrival = seconds_from_ns(arrival_ns - origin_ns_);
-  const Point point{device, arrival - device};
-  if (std::abs(point.lateness_s - line_.at(device)) > believable_s(device)) {
-    if (!confirms_jump(point)) {
-      return std::min(origin_ns_ + ns_from_seconds(device + line_.at(device)), arrival_ns);
-    }
-    ++restarts_;
+  const double since_origin_s = unwrapped(device_s, arrival_ns) - origin_device_s_;
+  const Point point{since_origin_s, seconds_from_ns(arrival_ns - origin_ns_) - since_origin_s};
+  if (tick) witness_.observe(since_origin_s + origin_device_s_, *tick);
+  const Belief belief = judge(point, tick && witness_.knows());
+  if (belief == Belief::kJumped) return jump(device_s, arrival_ns);
+  if (belief == Belief::kDoubted) {
+    return {std::min(mapped_ns(point.device_s), arrival_ns), true, true};
+  }
+
+  const bool window_is_over =
+      since_origin_s + origin_device_s_ - last_device_s_ > options_.window_s;
+  count_midnights(since_origin_s + origin_device_s_ - device_s);
+  if (window_is_over) {  // nothing of it is left after such a pause
     start(device_s, arrival_ns);
-    return arrival_ns;
+    return {arrival_ns, true};
   }
-
-  if (device - (last_device_s_ - origin_device_s_) > options_.window_s) {
-    start(device_s, arrival_ns);  // nothing of the window is left after such a pause
-    return arrival_ns;
-  }
-
-  suspects_ = 0;
-  last_device_s_ = device + origin_device_s_;
+  last_device_s_ = since_origin_s + origin_device_s_;
   last_arrival_ns_ = arrival_ns;
-  if (insert(point)) {
-    const double before = line_.at(device) + correction_s_;
-    fit();
-    correction_s_ = before - line_.at(device);
-  }
-  settle(device);
-  return origin_ns_ + ns_from_seconds(device + line_.at(device) + correction_s_);
+  if (belief == Belief::kBelieved) take(point);
+  glide(point.device_s);
+  residuals_s_.add(point.lateness_s - envelope_.at(point.device_s));
+  const std::int64_t timestamp_ns = mapped_ns(point.device_s);
+  const bool doubtful = !settled_ || std::abs(correction_s_) > options_.doubtful_s;
+  return {doubtful ? std::min(timestamp_ns, arrival_ns) : timestamp_ns, doubtful};
+}
+
+std::int64_t ClockModel::mapped_ns(double device_s) const {
+  return origin_ns_ + ns_from_seconds(device_s + envelope_.at(device_s) + correction_s_);
 }
 
 /// The seconds of the day, counted on from the last observation's day: the day is the one that the
@@ -61,30 +80,78 @@ double ClockModel::unwrapped(double device_s, std::int64_t arrival_ns) const {
   return device_s + kDay_s * std::round((expected - device_s) / kDay_s);
 }
 
+/// A day begins once, whatever comes late around midnight.
+void ClockModel::count_midnights(double days_passed_s) {
+  const auto day = static_cast<std::int64_t>(std::round(days_passed_s / kDay_s));
+  midnights_ += std::max<std::int64_t>(0, day - day_);
+  day_ = std::max(day, day_);
+}
+
 void ClockModel::start(double device_s, std::int64_t arrival_ns) {
   started_ = true;
   origin_ns_ = last_arrival_ns_ = arrival_ns;
   origin_device_s_ = last_device_s_ = device_s;
-  first_ = count_ = 0;
-  line_ = {};
-  correction_s_ = settled_at_s_ = 0;
-  suspects_ = 0;
-  insert({});
+  envelope_.clear();
+  envelope_.insert({});
+  witness_.reset();
+  residuals_s_.clear();
+  correction_s_ = corrected_at_s_ = 0;
+  settled_ = false;
+  earliest_ = last_near_ = {};
+  near_earliest_ = suspects_ = 0;
+  day_ = 0;
 }
 
-/// A jump shows the same new lateness several times while both clocks run on. Datagrams that a
-/// stalled network delivers all at once do not: they arrive together and catch up.
-bool ClockModel::confirms_jump(const Point& suspect) {
-  const double device_passed = suspect.device_s - first_suspect_.device_s;
-  const double change = suspect.lateness_s - first_suspect_.lateness_s;
-  const double arrival_passed = device_passed + change;
-  const bool goes_on = suspects_ > 0 && std::abs(change) <= 0.5 * options_.jump_s &&
-                       device_passed > 0 && arrival_passed >= 0.5 * device_passed;
+ClockReading ClockModel::jump(double device_s, std::int64_t arrival_ns) {
+  ++jumps_;
+  before_last_jump_ns_ = last_jump_ns_;
+  last_jump_ns_ = arrival_ns;
+  start(device_s, arrival_ns);
+  return {arrival_ns, true, true};
+}
+
+ClockModel::Belief ClockModel::judge(const Point& point, bool witnessed) {
+  const double residual_s = point.lateness_s - envelope_.at(point.device_s);
+  if (witnessed && witness_.stepped_s() != 0) return judge_step(point, residual_s);
+  if (std::abs(residual_s) <= believable_s(point.device_s) || (witnessed && options_.lenient)) {
+    suspects_ = 0;
+    return Belief::kBelieved;
+  }
+  // Nothing arrives before it was sent: that the mapping was late needs no confirmation.
+  if (witnessed && residual_s < 0) return Belief::kJumped;
+  const bool is_steady = runs_on(point);
+  const int needed = witnessed ? options_.delay_confirmations : options_.jump_confirmations;
+  if (suspects_ >= needed) return Belief::kJumped;
+  return witnessed && (!is_steady || suspects_ < kSteady) ? Belief::kLate : Belief::kDoubted;
+}
+
+/// The counter says that the clock was stepped. So does the lateness, or the counter was: it began
+/// anew, or does not count what the clock counts.
+ClockModel::Belief ClockModel::judge_step(const Point& point, double residual_s) {
+  runs_on(point);
+  const bool is_on_time = std::abs(residual_s) < 0.5 * std::abs(witness_.stepped_s()) &&
+                          std::abs(residual_s) <= believable_s(point.device_s);
+  if (is_on_time && (suspects_ >= kSteady || options_.lenient)) {
+    witness_.reset();
+    suspects_ = 0;
+    return Belief::kBelieved;
+  }
+  if (!is_on_time && suspects_ >= options_.jump_confirmations) return Belief::kJumped;
+  return Belief::kDoubted;
+}
+
+/// Counts the data in a row that are as late as each other while both clocks run on.
+bool ClockModel::runs_on(const Point& suspect) {
+  const bool goes_on =
+      suspects_ > 0 &&
+      std::abs(suspect.lateness_s - first_suspect_.lateness_s) <= 0.5 * options_.jump_s &&
+      arrives_apart(first_suspect_, suspect);
   if (!goes_on) {
     first_suspect_ = suspect;
     suspects_ = 0;
   }
-  return ++suspects_ >= options_.jump_confirmations;
+  ++suspects_;
+  return goes_on;
 }
 
 /// How far from the mapping a stamp may lie: a jump's size, and after a pause what drift explains.
@@ -93,80 +160,66 @@ double ClockModel::believable_s(double device_s) const {
   return options_.jump_s + 2.0 * options_.max_drift * pause_s;
 }
 
-/// Files the point under its slice; true when the envelope may have changed.
-bool ClockModel::insert(const Point& point) {
-  const double width_s = options_.window_s / static_cast<double>(kSlices);
-  const auto slice = static_cast<std::int64_t>(std::floor(point.device_s / width_s));
-  bool changed = false;
-  while (count_ > 0 && slices_[first_].lowest.device_s < point.device_s - options_.window_s) {
-    first_ = (first_ + 1) % kSlices;
-    --count_;
-    changed = true;
+void ClockModel::take(const Point& point) {
+  const double before_s = envelope_.at(point.device_s) + correction_s_;
+  if (envelope_.insert(point) && settled_) {
+    correction_s_ = before_s - envelope_.at(point.device_s);
   }
-  if (count_ > 0 && slice <= newest_slice_) {
-    auto& [lowest, observations] = slices_[(first_ + count_ - 1) % kSlices];
-    observations += 1;
-    const double expected = lowest.lateness_s + line_.slope * (point.device_s - lowest.device_s);
-    // A datagram overtaken by its successor must not upset the order of the points.
-    if (point.lateness_s >= expected || point.device_s < lowest.device_s) return changed;
-    lowest = point;
-    return true;
-  }
-  if (count_ == kSlices) {
-    first_ = (first_ + 1) % kSlices;
-    --count_;
-  }
-  slices_[(first_ + count_) % kSlices] = {point, 1};
-  ++count_;
-  newest_slice_ = slice;
-  return true;
+  if (!settled_) settle(point);
 }
 
-void ClockModel::fit() {
-  std::array<Point, kSlices> hull;  // lower convex hull, left to right (Andrew's monotone chain)
-  std::size_t size = 0;
-  double mean_device = 0;
-  double observations = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Slice& slice = slices_[(first_ + i) % kSlices];
-    const Point& point = slice.lowest;
-    observations += slice.observations;
-    mean_device += (point.device_s - mean_device) * slice.observations / observations;
-    const auto above_chord = [&](const Point& a, const Point& b) {
-      return (b.lateness_s - a.lateness_s) * (point.device_s - a.device_s) >=
-             (point.lateness_s - a.lateness_s) * (b.device_s - a.device_s);
-    };
-    while (size >= 2 && above_chord(hull[size - 2], hull[size - 1])) --size;
-    hull[size++] = point;
+/// A mapping that rests on the first data alone would be as late as they are: those that a stalled
+/// network delivers at once are late by ever less.
+void ClockModel::settle(const Point& point) {
+  if (point.lateness_s < earliest_.lateness_s - options_.settling_spread_s) {
+    near_earliest_ = 0;
+  } else if (point.lateness_s <= earliest_.lateness_s + options_.settling_spread_s &&
+             (near_earliest_ == 0 || arrives_apart(last_near_, point))) {
+    ++near_earliest_;
+    last_near_ = point;
   }
-
-  // The line nearest to all points from below supports the hull below their mean.
-  std::size_t edge = 0;
-  while (edge + 2 < size && hull[edge + 1].device_s < mean_device) ++edge;
-  const auto slope_after = [&](std::size_t i) {
-    return (hull[i + 1].lateness_s - hull[i].lateness_s) /
-           (hull[i + 1].device_s - hull[i].device_s);
-  };
-  const double free_slope =
-      size >= 2 && hull[edge + 1].device_s > hull[edge].device_s ? slope_after(edge) : 0.0;
-  const double slope = std::clamp(free_slope, -options_.max_drift, options_.max_drift);
-
-  // With the slope at its limit the line rests on another vertex.
-  const auto height = [&](const Point& p) { return p.lateness_s - slope * p.device_s; };
-  const Point support =
-      *std::min_element(hull.begin(), hull.begin() + static_cast<std::ptrdiff_t>(size),
-                        [&](const Point& a, const Point& b) { return height(a) < height(b); });
-  line_ = {support.device_s, support.lateness_s, slope};
+  if (near_earliest_ == 0) {
+    near_earliest_ = 1;
+    last_near_ = point;
+  }
+  if (point.lateness_s < earliest_.lateness_s) earliest_ = point;
+  settled_ =
+      near_earliest_ >= options_.settling_data || point.device_s > options_.settling_at_most_s;
 }
 
 /// The envelope steps when a lower point comes or an old one leaves. A step in the stamps would be
 /// a jerk of the hand, so the mapping glides; by at most half of the time passed, that it never
 /// runs backwards.
-void ClockModel::settle(double device_s) {
-  const double passed = std::max(0.0, device_s - settled_at_s_);
-  settled_at_s_ = std::max(settled_at_s_, device_s);
-  const double wanted = correction_s_ * -std::expm1(-passed / options_.settling_s);
+void ClockModel::glide(double device_s) {
+  const double passed = std::max(0.0, device_s - corrected_at_s_);
+  corrected_at_s_ = std::max(corrected_at_s_, device_s);
+  const double wanted = correction_s_ * -std::expm1(-passed / options_.gliding_s);
   correction_s_ -= std::clamp(wanted, -0.5 * passed, 0.5 * passed);
+}
+
+double ClockModel::lateness_s() const {
+  const double since_origin_s = last_device_s_ - origin_device_s_;
+  return seconds_from_ns(origin_ns_) - origin_device_s_ + envelope_.at(since_origin_s);
+}
+
+ClockReport ClockModel::report() const {
+  ClockReport report;
+  report.jumps = jumps_;
+  report.midnights = midnights_;
+  if (!started_) return report;
+  report.span_s = seconds_from_ns(last_arrival_ns_ - origin_ns_);
+  if (report.span_s >= kDriftAfter_s) report.drift_ppm = 1e6 * drift();
+  report.jitter_ms = 1e3 * std::max(0.0, residuals_s_.at(kJitterShare));
+  const bool jumps_often =
+      seconds_from_ns(last_arrival_ns_ - before_last_jump_ns_) < kUnstableFor_s;
+  if (jumps_often || suspects_ >= kSteady) {
+    report.state = ClockState::kUnstable;
+  } else if (!settled_ || report.span_s < kSteadyAfter_s) {
+    report.state = ClockState::kSettling;
+  } else {
+    report.state = ClockState::kSteady;
+  }
+  return report;
 }
 
 }  // namespace handeye

@@ -19,6 +19,10 @@ constexpr double kLobeDepth = 0.05;  // a second peak lies beyond a valley this 
 constexpr std::size_t kLeastPeakReach = 3;
 constexpr std::size_t kMostPeakReach = 20;
 constexpr double kPeakDrop = 0.005;
+// Speeds never agree better than this, for the motion between the samples is not known.
+constexpr double kLeastLack = 0.005;
+// An offset within this share of the intervals is sharp.
+constexpr double kSharp = 0.1;
 
 /// The eye's mean angular speed between two of its samples.
 struct Interval {
@@ -153,6 +157,19 @@ double second_peak(const std::vector<Correlation>& curve, std::size_t top) {
   return highest;
 }
 
+/// How clearly the first peak wins: the squared difference of the speeds that is left there,
+/// against what is left at the second one. 0: as much; 1: next to nothing.
+double distinctness(const TimeOffset& found) {
+  const double first_lacks = std::max(1.0 - found.peak, kLeastLack);
+  const double second_lacks = std::max(1.0 - found.second_peak, first_lacks);
+  return 1.0 - first_lacks / second_lacks;
+}
+
+double confidence_of(const TimeOffset& found, const TimeOffsetOptions& options) {
+  const double blur = found.sigma_s / (kSharp * options.interval_s);
+  return std::clamp(distinctness(found) / (1.0 + blur * blur), 0.0, 1.0);
+}
+
 }  // namespace
 
 std::optional<TimeOffset> correlate_angular_speed(const PoseBuffer& hand,
@@ -198,6 +215,7 @@ std::optional<TimeOffset> correlate_angular_speed(const PoseBuffer& hand,
   const double slope_per_s2 = -peak->curvature / (options.grid_s * options.grid_s);
   const double noise = 1.0 - result.peak * result.peak;
   result.sigma_s = std::sqrt(noise / (independent * result.peak * slope_per_s2));
+  result.confidence = confidence_of(result, options);
   return result;
 }
 

@@ -32,6 +32,11 @@ struct TimeOffset {
   double sigma_s{0};
   double peak{0};         ///< agreement there: 1 - mean((e - h)^2) / (2 var(e)) of the speeds
   double second_peak{0};  ///< of the next local maximum; near `peak`: periodic motion
+  /// 0..1: how sure it is that the offset lies in this peak, and that the peak tells where. The
+  /// product of how far the peak rises above any agreement elsewhere, measured by how well it
+  /// agrees itself, and of how narrow its error is against an interval of the speeds. Above 0.5:
+  /// sure; below 0.1: move in another rhythm, or longer.
+  double confidence{0};
 };
 
 /// Time offset by correlating the magnitudes of the angular velocities of hand and eye, which are

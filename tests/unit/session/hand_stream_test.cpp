@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/session/hand_path.hpp"
 #include "drivers/dtrack/formatter.hpp"
 
 namespace handeye {
@@ -31,12 +30,81 @@ std::string datagram(std::uint32_t number, std::optional<double> seconds_of_day,
   return text;
 }
 
+/// The k-th of a tracker at 60 Hz, on time.
+Datagram regular(std::uint32_t k, std::string& text) {
+  text = datagram(k, 43'000.0 + 1e-9 * static_cast<double>(k * kPeriod_ns), 12.5);
+  return {5'000'000'000 + k * kPeriod_ns + kLatency_ns, text};
+}
+
 TEST(HandStream, TakesTheConfiguredBody) {
   HandStream stream(4);
-  const auto sample = stream.take({1'000'000'000, datagram(1, 100.0, 12.5)});
+  std::string text;
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    const auto sample = stream.take(regular(k, text));
+    ASSERT_TRUE(sample);
+    EXPECT_FALSE(sample->tracked) << "two data make no clock";
+    EXPECT_TRUE(sample->doubtful_time);
+  }
+  const auto sample = stream.take(regular(2, text));
   ASSERT_TRUE(sample);
   EXPECT_TRUE(sample->tracked);
+  EXPECT_FALSE(sample->doubtful_time);
+  EXPECT_FALSE(sample->covariance) << "it says none";
   EXPECT_DOUBLE_EQ(sample->room_from_hand.translation().x(), 12.5);
+}
+
+TEST(HandStream, AJumpOfTheTrackersClockIsMarkedAndBeginsAnEpoch) {
+  HandStream stream(4);
+  PoseBuffer buffer;
+  std::string text;
+  int doubtful = 0;
+  for (std::uint32_t k = 0; k < 600; ++k) {
+    Datagram sent = regular(k, text);
+    if (k >= 300) {
+      text = datagram(k, 43'000.0 + 1e-9 * static_cast<double>(k * kPeriod_ns) - 0.1, 12.5);
+      sent.bytes = text;
+    }
+    const auto sample = stream.take(sent);
+    ASSERT_TRUE(sample);
+    buffer.push(*sample);
+    if (k < 10) continue;
+    if (sample->doubtful_time) {
+      ++doubtful;
+      EXPECT_FALSE(sample->tracked);
+    } else {
+      EXPECT_EQ(sample->clock_epoch, k < 300 ? 0 : 1);
+      const std::int64_t expected_ns = 5'000'000'000 + k * kPeriod_ns + kLatency_ns;
+      EXPECT_NEAR(static_cast<double>(sample->timestamp_ns - expected_ns), 0, 1e5) << k;
+    }
+  }
+  EXPECT_LE(doubtful, 12);
+  EXPECT_GE(doubtful, 3);
+  EXPECT_EQ(stream.clock_report().jumps, 1);
+  const std::int64_t jump_ns = 5'000'000'000 + 300 * kPeriod_ns + kLatency_ns;
+  EXPECT_EQ(buffer.lookup(jump_ns - kPeriod_ns / 2).status, LookupStatus::kGap);
+}
+
+TEST(HandStream, DatagramsOvertakenOnTheWayFindTheirPlace) {
+  HandStream stream(4);
+  PoseBuffer buffer;
+  std::string text;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    // Every fifth comes after its two successors.
+    const std::uint32_t number = k % 5 == 0 ? k + 1 : k % 5 == 1 ? k + 1 : k % 5 == 2 ? k - 2 : k;
+    Datagram sent = regular(number, text);
+    if (number < k) sent.arrival_ns += (k - number) * kPeriod_ns;
+    const auto sample = stream.take(sent);
+    ASSERT_TRUE(sample);
+    buffer.push(*sample);
+    if (k % 50 == 7) buffer.push(*stream.take(sent));  // and some come twice
+  }
+  EXPECT_EQ(buffer.reordered(), 59U) << "the first was of doubtful time";
+  EXPECT_EQ(buffer.duplicates(), 6U);
+  EXPECT_EQ(buffer.out_of_order(), 0U);
+  for (std::size_t i = 1; i < buffer.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(buffer.at(i).timestamp_ns - buffer.at(i - 1).timestamp_ns),
+                static_cast<double>(kPeriod_ns), 1e3);
+  }
 }
 
 TEST(HandStream, AnAbsentBodyIsHidden) {
@@ -44,7 +112,7 @@ TEST(HandStream, AnAbsentBodyIsHidden) {
   const auto sample = stream.take({1'000'000'000, datagram(1, 100.0, 12.5)});
   ASSERT_TRUE(sample);
   EXPECT_FALSE(sample->tracked);
-  EXPECT_TRUE(stream.sample_of(4, 5).tracked) << "the other one is seen";
+  EXPECT_EQ(stream.sample_of(4).room_from_hand.translation().x(), 12.5) << "the other one is seen";
 }
 
 TEST(HandStream, FindsTheFirstBodyThatIsSeen) {
@@ -116,39 +184,6 @@ TEST(HandStream, WithoutDeviceTimeArrivalStandsForIt) {
   const auto sample = stream.take({1'234'000'000, datagram(1, std::nullopt, 0)});
   ASSERT_TRUE(sample);
   EXPECT_EQ(sample->timestamp_ns, 1'234'000'000);
-}
-
-HandSample sample_at(double time_s, const Eigen::Vector3d& w, const Eigen::Vector3d& t_mm) {
-  HandSample sample;
-  sample.timestamp_ns = static_cast<std::int64_t>(1e9 * time_s);
-  sample.tracked = true;
-  sample.room_from_hand.linear() = exp_so3(w);
-  sample.room_from_hand.translation() = t_mm;
-  return sample;
-}
-
-TEST(HandPath, MeasuresCoverageAgainstTheFirstPose) {
-  HandPath path;
-  EXPECT_EQ(path.second_axis_deg(), 0);
-  path.add(sample_at(0, {0, 0, 0}, {0, 0, 0}));
-  path.add(sample_at(1, {rad_from_deg(10), 0, 0}, {3, 4, 0}));
-  EXPECT_NEAR(path.rotation_coverage_deg(), 10, 1e-9);
-  EXPECT_NEAR(path.translation_coverage_mm(), 5, 1e-9);
-  EXPECT_NEAR(path.second_axis_deg(), 0, 1e-6) << "one axis only";
-  path.add(sample_at(2, {0, rad_from_deg(6), 0}, {0, 0, 0}));
-  EXPECT_GT(path.second_axis_deg(), 3);
-}
-
-TEST(HandPath, ThinsAndSkipsHiddenSamples) {
-  HandPath path;
-  for (int k = 0; k < 60; ++k) path.add(sample_at(k / 60.0, {0, 0, 0}, {0, 0, 0}));
-  EXPECT_LE(path.room_from_hand().size(), 10U);
-  const std::size_t before = path.room_from_hand().size();
-  HandSample hidden = sample_at(9, {1, 0, 0}, {99, 0, 0});
-  hidden.tracked = false;
-  path.add(hidden);
-  EXPECT_EQ(path.room_from_hand().size(), before);
-  EXPECT_EQ(path.translation_coverage_mm(), 0);
 }
 
 }  // namespace

@@ -62,6 +62,25 @@ std::optional<MaximumLikelihoodResult> solve(std::span<const HandEyeObservation>
 
 }  // namespace
 
+Vector6d error_of_whole(const HalvesComparison& halves, const Matrix6d& of_whole) {
+  // In units in which the difference's covariance is 1: a whole that adds up its halves has 1/4.
+  const Eigen::LLT<Matrix6d> unit(halves.covariance);
+  const Matrix6d half_way = unit.matrixL().solve(of_whole);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(
+      unit.matrixL().solve(half_way.transpose()).eval());
+  const Vector6d along = eigen.eigenvectors().transpose() * unit.matrixL().solve(halves.difference);
+  const Vector6d share = 2.0 * eigen.eigenvalues().cwiseMax(0.0).cwiseMin(0.25);
+  return unit.matrixL() * (eigen.eigenvectors() * share.cwiseProduct(along));
+}
+
+HalvesComparison compare(const Pose& first, const Pose& second, const Matrix6d& covariance) {
+  HalvesComparison comparison{.covariance = covariance};
+  comparison.difference << log_so3(first.linear() * second.linear().transpose()),
+      first.translation() - second.translation();
+  comparison.chi2 = comparison.difference.dot(covariance.ldlt().solve(comparison.difference));
+  return comparison;
+}
+
 std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
                                                const MaximumLikelihoodResult& result,
                                                const MaximumLikelihoodOptions& solver) {
@@ -70,13 +89,8 @@ std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservatio
   const auto first = solve(halves.first, result, solver);
   const auto second = solve(halves.second, result, solver);
   if (!first || !second) return std::nullopt;
-  HalvesComparison comparison;
-  comparison.difference << log_so3(first->solution.hand_from_eye.linear() *
-                                   second->solution.hand_from_eye.linear().transpose()),
-      first->solution.hand_from_eye.translation() - second->solution.hand_from_eye.translation();
-  const Matrix6d covariance = first->covariance + second->covariance;
-  comparison.chi2 = comparison.difference.dot(covariance.ldlt().solve(comparison.difference));
-  return comparison;
+  return compare(first->solution.hand_from_eye, second->solution.hand_from_eye,
+                 first->covariance + second->covariance);
 }
 
 }  // namespace handeye

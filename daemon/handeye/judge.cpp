@@ -7,7 +7,6 @@
 
 #include <Eigen/Dense>
 
-#include "daemon/handeye/halves.hpp"
 #include "daemon/handeye/motion_facts.hpp"
 #include "daemon/handeye/parts.hpp"
 #include "daemon/handeye/usable.hpp"
@@ -79,35 +78,41 @@ bool contradicts_itself(const MaximumLikelihoodResult& result) {
   return static_cast<double>(left_out) > kMaxContradicting * static_cast<double>(used + left_out);
 }
 
-/// Of the part whose scale is known best: through hand_from_eye it serves the others.
-double least_log_scale_sigma(const MaximumLikelihoodResult& result) {
+/// Of the part whose scale is known best: through hand_from_eye it serves the others. What another
+/// answer knows better of the translation it knows of the scale, on which the translation hangs.
+double log_scale_sigma(const MaximumLikelihoodResult& result, const Matrix6d& covariance) {
   double least = result.log_scale_sigma;
   for (const PartResult& part : result.parts) {
     if (part.poses_used > 0) least = std::min(least, part.log_scale_sigma);
   }
-  return least;
+  const double known = sigma_translation_mm(covariance) / result.sigma_translation_mm();
+  return known < 1.0 ? least * known : least;
 }
 
 /// Whether the unknown scale is what makes the translation uncertain: its share of the variance is
 /// the likelihood's, the variance the answer's.
-bool scale_is_to_blame(const MaximumLikelihoodResult& result, double sigma_answer_mm,
+bool scale_is_to_blame(const MaximumLikelihoodResult& result, const Matrix6d& covariance,
                        const JudgeOptions& options) {
   const double sigma = result.sigma_translation_mm();
   const double known = result.sigma_translation_known_scale_mm;
-  return least_log_scale_sigma(result) > options.max_log_scale_sigma ||
-         (options.solver.estimate_scale && sigma_answer_mm > options.wanted_translation_mm &&
+  return log_scale_sigma(result, covariance) > options.max_log_scale_sigma ||
+         (options.solver.estimate_scale &&
+          sigma_translation_mm(covariance) > options.wanted_translation_mm &&
           known * known < (1.0 - kScaleShare) * sigma * sigma);
 }
 
 /// What the answer is worth.
 void weigh(std::span<const HandEyeObservation> observations, const MaximumLikelihoodResult& result,
-           const Matrix6d& covariance, const JudgeOptions& options, Judgement& judgement) {
-  judgement.covariance = covariance;
+           const JudgedAnswer& answer, const JudgeOptions& options, Judgement& judgement) {
+  judgement.covariance = answer.covariance;
   if (result.poses_used >= 2 * kMinHalf) {
-    if (const auto halves = compare_halves(observations, result, options.solver)) {
+    const auto halves =
+        answer.halves ? answer.halves : compare_halves(observations, result, options.solver);
+    if (halves) {
       judgement.halves_chi2 = halves->chi2;
       if (halves->chi2 > options.halves_chi2_by_chance) {
-        judgement.covariance += 0.25 * halves->difference * halves->difference.transpose();
+        const Vector6d error = error_of_whole(*halves, answer.covariance);
+        judgement.covariance += error * error.transpose();
       }
     }
   }
@@ -118,7 +123,7 @@ bool suffices(const Matrix6d& covariance, const MaximumLikelihoodResult& result,
               const JudgeOptions& options) {
   return covariance.allFinite() && sigma_rotation_deg(covariance) <= options.wanted_rotation_deg &&
          sigma_translation_mm(covariance) <= options.wanted_translation_mm &&
-         least_log_scale_sigma(result) <= options.max_log_scale_sigma &&
+         log_scale_sigma(result, covariance) <= options.max_log_scale_sigma &&
          !contradicts_itself(result);
 }
 
@@ -141,7 +146,7 @@ bool turns_about_camera(std::span<const HandEyeObservation> observations, const 
 
 /// What is wrong with a motion that did not suffice. `result`: nothing where there is no answer.
 MotionProblem problem_of(std::span<const HandEyeObservation> observations,
-                         const MaximumLikelihoodResult* result, double sigma_answer_mm,
+                         const MaximumLikelihoodResult* result, const Matrix6d& covariance,
                          const JudgeOptions& options) {
   std::vector<HandEyeObservation> usable;
   std::vector<Pose> hand;
@@ -157,27 +162,26 @@ MotionProblem problem_of(std::span<const HandEyeObservation> observations,
   const MotionProblem problem = classify(motion_facts(hand), noise, on_the_spot, scale);
   if (problem != MotionProblem::kFixedPoint && problem != MotionProblem::kNone) return problem;
   // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
-  const bool pivot = result ? scale_is_to_blame(*result, sigma_answer_mm, options)
+  const bool pivot = result ? scale_is_to_blame(*result, covariance, options)
                             : problem == MotionProblem::kFixedPoint;
   return pivot ? MotionProblem::kFixedPoint : MotionProblem::kUncertain;
 }
 
-/// Rotation too small to know the camera's axes by, or a remedy that no axis changes, leaves
-/// nothing to choose.
+/// By what the motion determines, whatever the halves say.
 MissingMotion missing_motion(std::span<const HandEyeObservation> observations,
-                             const JudgedAnswer& answer, const Judgement& judgement,
+                             const JudgedAnswer& answer, MotionProblem problem,
                              const JudgeOptions& options) {
-  if (judgement.problem != MotionProblem::kSingleAxis &&
-      judgement.problem != MotionProblem::kUncertain) {
-    return remedy(judgement.problem);
+  // Which axis: only where there are turns to know the camera's axes by, and an axis can help.
+  if (problem != MotionProblem::kSingleAxis && problem != MotionProblem::kUncertain) {
+    return remedy(problem);
   }
-  const double rotation = sigma_rotation_deg(judgement.covariance) / options.wanted_rotation_deg;
-  const double translation =
-      sigma_translation_mm(judgement.covariance) / options.wanted_translation_mm;
-  const Observability& weakest = judgement.observability;
-  return missing_turn(
-      observations, answer.hand_from_eye,
-      (rotation > translation ? weakest.rotation_deg : weakest.translation_mm).axis_in_hand);
+  const Observability weakest = observability(answer.covariance);
+  const bool rotation_first =
+      sigma_rotation_deg(answer.covariance) / options.wanted_rotation_deg >
+      sigma_translation_mm(answer.covariance) / options.wanted_translation_mm;
+  const Observability::Direction& weak =
+      rotation_first ? weakest.rotation_deg : weakest.translation_mm;
+  return missing_turn(observations, answer.hand_from_eye, weak.axis_in_hand);
 }
 
 }  // namespace
@@ -186,7 +190,7 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options) {
   Judgement judgement;
-  weigh(observations, result, answer.covariance, options, judgement);
+  weigh(observations, result, answer, options, judgement);
   const bool enough = result.poses_used >= kMinPoses;
   const bool two_halves = judgement.halves_chi2.has_value() || result.poses_used < 2 * kMinHalf;
   if (enough && two_halves && suffices(judgement.covariance, result, options)) {
@@ -196,20 +200,19 @@ Judgement judge(std::span<const HandEyeObservation> observations,
   // Precise by itself: the motion was enough, and the halves disagree.
   const bool uncertain = enough && suffices(answer.covariance, result, options);
   judgement.problem = uncertain ? MotionProblem::kUncertain
-                                : problem_of(observations, &result,
-                                             sigma_translation_mm(answer.covariance), options);
-  judgement.missing = missing_motion(observations, answer, judgement, options);
+                                : problem_of(observations, &result, answer.covariance, options);
+  judgement.missing = missing_motion(observations, answer, judgement.problem, options);
   return judgement;
 }
 
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   if (result) {
-    return judge(observations, *result, {result->solution.hand_from_eye, result->covariance},
-                 options);
+    const JudgedAnswer answer{result->solution.hand_from_eye, result->covariance, std::nullopt};
+    return judge(observations, *result, answer, options);
   }
   Judgement judgement;
-  judgement.problem = problem_of(observations, nullptr, 0, options);
+  judgement.problem = problem_of(observations, nullptr, Matrix6d::Zero(), options);
   judgement.missing = remedy(judgement.problem);
   return judgement;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "daemon/handeye/halves.hpp"
 #include "daemon/handeye/maximum_likelihood.hpp"
 #include "daemon/handeye/observability.hpp"
 
@@ -32,7 +33,8 @@ struct JudgeOptions {
 /// What is judged where the likelihood's answer was only the start of a better one (one_step.hpp).
 struct JudgedAnswer {
   Pose hand_from_eye{Pose::Identity()};
-  Matrix6d covariance{Matrix6d::Zero()};  ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
+  Matrix6d covariance{Matrix6d::Zero()};   ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
+  std::optional<HalvesComparison> halves;  ///< its own; nothing: the likelihood's serve
 };
 
 struct Judgement {
@@ -41,9 +43,8 @@ struct Judgement {
   /// and the second where they are in order of time, else every other pose. Nothing when a half is
   /// too short.
   std::optional<double> halves_chi2;
-  /// Of the answer's hand_from_eye, with what the halves add: where they differ by d and chance
-  /// does not explain it, d/2 is taken as one more error of the answer, for it is the standard
-  /// error of the mean of two. This, not the answer's own, is what is accepted or refused.
+  /// Of the answer's hand_from_eye, with what the halves add where chance does not explain their
+  /// difference (error_of_whole). This, not the answer's own, is what is accepted or refused.
   Matrix6d covariance{Matrix6d::Zero()};
   Observability observability;  ///< from that covariance
   MissingMotion missing{
@@ -59,7 +60,6 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const JudgeOptions& options = {});
 
 /// The same of `answer`, which the same observations, and what else was seen, led to from `result`.
-/// The halves are solved by likelihood: what one half says against the other holds for either.
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options = {});

@@ -50,8 +50,13 @@ MissingMotion missing_turn(std::span<const HandEyeObservation> observations,
     const bool as_good = least >= 0 && turned[least] < lacking;
     if (least < 0 || (turned[axis] < turned[least] && !as_good)) least = axis;
   }
-  const bool enough = turned[least] > kEnough_deg && turned[least] > lacking;
-  return enough ? MissingMotion::kKeepMoving : kAbout[static_cast<std::size_t>(least)];
+  if (turned[least] > kEnough_deg && turned[least] > lacking) {
+    // Enough of those; the third shows the other directions.
+    Eigen::Index rarest = 0;
+    if (turned.minCoeff(&rarest) > lacking) return MissingMotion::kKeepMoving;
+    least = static_cast<int>(rarest);
+  }
+  return kAbout[static_cast<std::size_t>(least)];
 }
 
 std::string_view words(MissingMotion missing) {

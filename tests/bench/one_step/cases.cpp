@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/one_step/cases.hpp"
 
+#include "tests/unit/handeye/one_step_motions.hpp"
+
 namespace handeye::bench {
 namespace {
 
@@ -38,6 +40,9 @@ std::vector<OneStepCase> one_step_cases() {
   parts.tracks.frames = 180;
   OneStepSceneOptions varying;
   varying.hand_noise_varies = true;
+  OneStepSceneOptions trocar;
+  trocar.tracks.motion =
+      synthetic::shaped_motion({{20, 20, 20}, {0, 0, 15}, synthetic::kTrocar_mm});
   return {
       {"plain", plain},
       {"plain-given", plain, HandNoiseSource::kGiven},
@@ -50,6 +55,7 @@ std::vector<OneStepCase> one_step_cases() {
       {"varying-given", varying, HandNoiseSource::kGiven},
       {"varying-estimated", varying, HandNoiseSource::kEstimated},
       {"varying-measured", varying, HandNoiseSource::kMeasured},
+      {"trocar-slide", trocar},
       {"150-keyframes", all_keyframes(150, std::nullopt)},
       {"150-keyframes-lens", all_keyframes(150, IntrinsicsMode::kEstimate)},
       {"600-keyframes", all_keyframes(600, std::nullopt), HandNoiseSource::kEstimated, 10, 10},

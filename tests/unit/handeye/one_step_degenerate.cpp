@@ -96,20 +96,22 @@ Verdicts verdicts(const OneStepSceneOptions& options, std::uint32_t seed,
   if (!start) return {{of_start}, {of_start}};
   Verdicts result;
   result.likelihood = weighed(of_start, start->solution.hand_from_eye, scene);
-  const auto found =
-      one_step(scene.problem, *start, one_step_options(scene, HandNoiseSource::kEstimated));
+  const OneStepOptions solving = one_step_options(scene, HandNoiseSource::kEstimated);
+  const auto found = one_step(scene.problem, *start, solving);
   if (!found) {
     result.one_step = result.likelihood;
     return result;
   }
+  const JudgedAnswer answer{found->hand_from_eye, found->covariance,
+                            compare_halves(scene.problem, *start, *found, solving)};
   result.one_step =
-      weighed(judge(observations, *start, {found->hand_from_eye, found->covariance}, judging),
-              found->hand_from_eye, scene);
+      weighed(judge(observations, *start, answer, judging), found->hand_from_eye, scene);
   return result;
 }
 
-Verdicts verdicts(const Degenerate& motion, double amplitude, std::uint32_t seed) {
+Verdicts verdicts(const Degenerate& motion, double amplitude, std::uint32_t seed, int frames) {
   OneStepSceneOptions options;
+  options.tracks.frames = frames;
   options.tracks.motion = shaped_motion(motion.shape(amplitude));
   return verdicts(options, seed);
 }

@@ -40,6 +40,6 @@ struct Verdicts {
 Verdicts verdicts(const OneStepSceneOptions& options, std::uint32_t seed,
                   const JudgeOptions& wanted = {});
 
-Verdicts verdicts(const Degenerate& motion, double amplitude, std::uint32_t seed);
+Verdicts verdicts(const Degenerate& motion, double amplitude, std::uint32_t seed, int frames = 130);
 
 }  // namespace handeye::synthetic

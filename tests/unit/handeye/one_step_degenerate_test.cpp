@@ -47,7 +47,7 @@ TEST_P(OneStepDegenerate, IsNeverAcceptedWrongly) {
 
 TEST_P(OneStepDegenerate, IsAcceptedOnceWhatWasMissingIsThere) {
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-    const Verdicts found = verdicts(motion(), 1, seed);
+    const Verdicts found = verdicts(motion(), 1, seed, 260);
     EXPECT_TRUE(found.one_step.accepted()) << seed;
     EXPECT_LT(found.one_step.rotation_in_sigmas, kHonest) << seed;
     EXPECT_LT(found.one_step.translation_in_sigmas, kHonest) << seed;

@@ -120,8 +120,8 @@ void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) 
     if (end_background_work(running)) return;
     if (!running.calibration) continue;
     if (running.finish_asked || running.time_is_up()) return conclude(running, stop);
-    begin_background_work(running);
     tell_progress(running);
+    begin_background_work(running);
   }
 }
 

@@ -11,6 +11,7 @@ std::unique_ptr<Camera> make_lcm_camera(const Config& config) {
   LcmCameraOptions options;
   options.provider_url = config.lcm.url;
   options.channel = Channels(config.lcm.prefix).frame;
+  options.any_clock = true;  // the camera thread's FrameClock looks after it
   return std::make_unique<LcmCamera>(options);
 }
 

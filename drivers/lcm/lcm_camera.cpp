@@ -14,6 +14,13 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
+namespace {
+
+// A century: differences of such times are whole nanoseconds yet.
+constexpr std::int64_t kEndOfTime_ns = 3'155'760'000'000'000'000;
+
+}  // namespace
+
 LcmCamera::LcmCamera(LcmCameraOptions options) : options_(std::move(options)) {}
 
 std::optional<std::string> LcmCamera::open() {
@@ -67,6 +74,7 @@ void LcmCamera::receive(const CheckedImage& image) {
 }
 
 bool LcmCamera::is_plausible(const image_t& image, std::int64_t arrival_ns) const {
+  if (options_.any_clock) return image.timestamp_ns >= 0 && image.timestamp_ns < kEndOfTime_ns;
   const nanoseconds age(arrival_ns - image.timestamp_ns);
   return age <= options_.oldest_timestamp && age >= -options_.latest_timestamp &&
          image.timestamp_ns > stream_.timestamp_ns;

@@ -22,15 +22,18 @@ struct LcmCameraOptions {
   /// host's CLOCK_MONOTONIC and the image counts as malformed.
   std::chrono::milliseconds oldest_timestamp{10'000};
   std::chrono::milliseconds latest_timestamp{1'000};  ///< in the future
+  /// True: stamps may be of any clock and go back; who grabs must look after them (FrameClock).
+  bool any_clock{false};
 };
 
 /// A camera whose images another program publishes as image_t (GREY8 or JPEG) on an LCM channel.
 ///
 /// Nothing in a message is trusted: an image that is not an image_t, whose fields or lengths are
-/// out of range, whose time stamp is implausible or not after the one before, or whose JPEG is
-/// damaged is counted as malformed and passed over. A gap in frame_number counts as dropped,
-/// wherever the image got lost on its way; a new session_id starts a new count. While images come
-/// faster than grab() is called, kQueueLength of them wait and the oldest go first (dropped_queue).
+/// out of range, whose time stamp is implausible or not after the one before (LcmCameraOptions), or
+/// whose JPEG is damaged is counted as malformed and passed over. A gap in frame_number counts as
+/// dropped, wherever the image got lost on its way; a new session_id starts a new count. While
+/// images come faster than grab() is called, kQueueLength of them wait and the oldest go first
+/// (dropped_queue).
 ///
 /// A channel cannot be unplugged: grab() says kLost only before open() and after close().
 class LcmCamera final : public Camera {

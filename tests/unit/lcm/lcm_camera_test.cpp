@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/lcm/lcm_camera.hpp"
 
+#include <limits>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -152,6 +153,24 @@ TEST_F(LcmCameraTest, CountsAndPassesOverWhatIsWrong) {
   expect_frame(7);
   EXPECT_EQ(camera_->counters().malformed, 7U);
   EXPECT_EQ(camera_->counters().received, 1U);
+}
+
+TEST_F(LcmCameraTest, HandsOnStampsOfAnyClockWhereThatIsWanted) {
+  options_.any_clock = true;
+  camera_.emplace(options_);
+  ASSERT_EQ(camera_->open(), std::nullopt);
+  image_t other_host = image(1);
+  other_host.timestamp_ns = 77;
+  image_t back = image(2);
+  back.timestamp_ns = 76;
+  image_t nonsense = image(3);
+  nonsense.timestamp_ns = std::numeric_limits<std::int64_t>::min();
+  for (const image_t& sent : {other_host, back, nonsense, image(4)}) send(sent);
+  expect_frame(1);
+  EXPECT_EQ(frame_.timestamp_ns, 77);
+  expect_frame(2);
+  expect_frame(4);
+  EXPECT_EQ(camera_->counters().malformed, 1U);
 }
 
 TEST_F(LcmCameraTest, PassesOverImagesThatGoBackInTime) {

@@ -99,5 +99,29 @@ TEST(DeviceStatus, CarriesTheCounters) {
   EXPECT_EQ(status.restarts, 5);
 }
 
+TEST(DeviceHealth, TellsWhatIsKnownOfTheClock) {
+  DeviceHealth health;
+  DeviceStatusReporter reporter(2.0);
+  EXPECT_EQ(reporter.report(health, 0).clock.state, clock_status_t::ABSENT);
+  health.reordered = 7;
+  health.set_clock({.state = ClockState::kSteady,
+                    .drift_ppm = 12.5,
+                    .jitter_ms = 1.5,
+                    .span_s = 33,
+                    .jumps = 2,
+                    .midnights = 1});
+  const device_status_t status = reporter.report(health, 1'000'000'000);
+  EXPECT_EQ(status.reordered, 7);
+  EXPECT_EQ(status.clock.state, clock_status_t::STEADY);
+  EXPECT_EQ(status.clock.drift_ppm, 12.5);
+  EXPECT_EQ(status.clock.jitter_ms, 1.5);
+  EXPECT_EQ(status.clock.span_s, 33);
+  EXPECT_EQ(status.clock.jumps, 2);
+  EXPECT_EQ(status.clock.midnights, 1);
+  EXPECT_TRUE(status.clock.text.empty());
+  health.set_clock({.state = ClockState::kUnstable, .jumps = 3});
+  EXPECT_FALSE(reporter.report(health, 2'000'000'000).clock.text.empty());
+}
+
 }  // namespace
 }  // namespace handeye

@@ -14,6 +14,9 @@ namespace {
 // One step is linear in the offset within a few milliseconds; look up again beyond this.
 constexpr double kOffsetSettled_s = 0.0005;
 constexpr int kMostRounds = 3;
+// Of the tracker's residuals, against what they should be: beyond twice the noise it is no longer
+// the noise, but a wrong minimum or a tracker that thinks too well of itself.
+constexpr double kMostChi2 = 4.0;
 
 /// Whether most of the frames that the hand was seen at have the tracker's own word on it.
 bool is_measured(const OneStepProblem& problem) {
@@ -35,6 +38,15 @@ OneStepOptions options_for(const Lens& lens, const Estimate& start, HandNoiseSou
   options.hand_noise = hand_noise;
   options.estimate_time_offset = start.options.estimate_time_offset;
   return options;
+}
+
+/// Whether it fits the tracker as the likelihood's answer, which has seen less, did. That one's
+/// noise is where an estimate starts.
+bool explains_the_hand(const OneStepResult& result, const Estimate& start,
+                       HandNoiseSource hand_noise) {
+  const double reference =
+      hand_noise == HandNoiseSource::kGiven ? std::max(1.0, start.likelihood->chi2_per_dof) : 1.0;
+  return result.chi2_per_dof <= kMostChi2 * reference;
 }
 
 /// Sum of the squared distances from their mean.
@@ -71,7 +83,8 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
   const Stopwatch stopwatch;
   OneStepEstimate estimate{.time_offset_s = start.time_offset_s, .hand_noise = hand_noise};
   MaximumLikelihoodResult from = *start.likelihood;
-  for (int round = 0; round < kMostRounds; ++round) {
+  bool settled = false;
+  for (int round = 0; round < kMostRounds && !settled; ++round) {
     const OneStepProblem problem = one_step_problem(reconstruction, hand, estimate.time_offset_s);
     if (estimate.hand_noise == HandNoiseSource::kMeasured && !is_measured(problem)) {
       estimate.hand_noise = HandNoiseSource::kEstimated;
@@ -79,12 +92,19 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
     const OneStepOptions options = options_for(reconstruction.lens, start, estimate.hand_noise);
     auto found = one_step(problem, from, options);
     if (!found) return std::nullopt;
+    if (!explains_the_hand(*found, start, estimate.hand_noise)) {
+      if (estimate.hand_noise != HandNoiseSource::kMeasured) return std::nullopt;
+      estimate.hand_noise = HandNoiseSource::kEstimated;
+      continue;
+    }
     estimate.result = std::move(*found);
     const double correction_s = estimate.result.time_offset_correction_s;
     estimate.time_offset_s += correction_s;
     from.solution.hand_from_eye = estimate.result.hand_from_eye;
-    if (!options.estimate_time_offset || std::abs(correction_s) < kOffsetSettled_s) break;
+    settled = !options.estimate_time_offset || std::abs(correction_s) < kOffsetSettled_s;
   }
+  // An offset that runs away has no first order to be corrected by.
+  if (!settled) return std::nullopt;
   const auto scale = scale_of(from.part, reconstruction, estimate.result);
   estimate.solution = {estimate.result.hand_from_eye,
                        scale.value_or(start.likelihood->solution.scale_units_per_mm)};
@@ -94,7 +114,7 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
 
 SampleNoise hand_noise_of(const OneStepEstimate& estimate) {
   SampleNoise noise{.rotation_deg = deg_from_rad(estimate.result.hand_rotation_sigma_rad),
-                  .translation_mm = estimate.result.hand_translation_sigma_mm};
+                    .translation_mm = estimate.result.hand_translation_sigma_mm};
   switch (estimate.hand_noise) {
     case HandNoiseSource::kGiven:
       noise.source = "given";

@@ -23,8 +23,9 @@ struct OneStepEstimate {
 /// From the likelihood's answer, which is needed to start; looks the hand up again until the offset
 /// stays. A lens that was not given is free, with what was believed of it before the images.
 /// `hand_noise`: kMeasured becomes kEstimated where most frames have no covariance from the tracker
-/// (6dcov). Nothing with a board, whose corners are no structure, and where one_step finds none.
-/// Deterministic.
+/// (6dcov), or where the residuals contradict it. Nothing with a board, whose corners are no
+/// structure; where one_step finds none; and where that fits the tracker much worse than the
+/// likelihood's does, or its offset does not settle: then it is in a wrong minimum. Deterministic.
 std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& reconstruction,
                                                     const PoseBuffer& hand, const Estimate& start,
                                                     HandNoiseSource hand_noise);

@@ -21,7 +21,8 @@ constexpr double kMaxOffset_s = 0.0005;
 OneStepSceneOptions all_keyframes(std::optional<IntrinsicsMode> lens) {
   OneStepSceneOptions options;
   options.keyframe_interval = 1;
-  options.tracks.features = 40;
+  options.tracks.frames = 100;
+  options.tracks.features = 30;
   options.lens = lens;
   return options;
 }
@@ -41,12 +42,13 @@ void expect_at_the_bound(const OneStepFigures& figures) {
 
 TEST(OneStepBound, IsReachedWithTheLensGiven) {
   expect_at_the_bound(
-      synthetic::study(all_keyframes(std::nullopt), HandNoiseSource::kEstimated, kSeeds).one_step);
+      synthetic::study(all_keyframes(std::nullopt), HandNoiseSource::kEstimated, kSeeds, 5)
+          .one_step);
 }
 
 TEST(OneStepBound, IsReachedWithTheLensFree) {
   expect_at_the_bound(synthetic::study(all_keyframes(IntrinsicsMode::kEstimate),
-                                       HandNoiseSource::kEstimated, kSeeds)
+                                       HandNoiseSource::kEstimated, kSeeds, 5)
                           .one_step);
 }
 

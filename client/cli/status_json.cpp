@@ -11,6 +11,16 @@ Json known_or_null(double value) {
   return value < 0 ? Json(nullptr) : Json(value);
 }
 
+Json clock_json(const clock_status_t& clock) {
+  return {{"state", clock_state_word(clock.state)},
+          {"text", clock.text},
+          {"drift_ppm", clock.drift_ppm},
+          {"jitter_ms", clock.jitter_ms},
+          {"span_s", clock.span_s},
+          {"jumps", clock.jumps},
+          {"midnights", clock.midnights}};
+}
+
 Json device_json(const device_status_t& device) {
   return {{"state", device_state_word(device.state)},
           {"text", device.text},
@@ -20,7 +30,30 @@ Json device_json(const device_status_t& device) {
           {"dropped", device.dropped},
           {"dropped_queue", device.dropped_queue},
           {"malformed", device.malformed},
-          {"restarts", device.restarts}};
+          {"restarts", device.restarts},
+          {"reordered", device.reordered},
+          {"clock", clock_json(device.clock)}};
+}
+
+/// The answer as it stands while collecting; null: none yet.
+Json estimate_json(const status_t& status) {
+  if (!status.has_estimate) return nullptr;
+  return {{"q_wxyz", status.q_wxyz}, {"t_mm", status.t_mm}};
+}
+
+Json time_offset_json(const status_t& status) {
+  if (status.time_offset_sigma_s < 0) return nullptr;
+  return {{"time_offset_s", status.time_offset_s},
+          {"sigma_s", status.time_offset_sigma_s},
+          {"confidence", status.time_offset_confidence}};
+}
+
+Json watch_json(const status_t& status) {
+  return {{"state", watch_state_word(status.watch_state)},
+          {"text", status.watch_text},
+          {"deviation_deg", status.watch_deviation_deg},
+          {"deviation_sigma_deg", known_or_null(status.watch_deviation_sigma_deg)},
+          {"age_s", known_or_null(status.watch_age_s)}};
 }
 
 Json session_json(const status_t& status) {
@@ -39,6 +72,10 @@ Json session_json(const status_t& status) {
           {"keyframes", status.keyframes},
           {"rotation_coverage_deg", status.rotation_coverage_deg},
           {"translation_coverage_mm", status.translation_coverage_mm},
+          {"turned_deg", status.turned_deg},
+          {"hand_from_eye", estimate_json(status)},
+          {"time_offset", time_offset_json(status)},
+          {"guidance_code", guide_word(status.guidance_code)},
           {"guidance", status.guidance}};
 }
 
@@ -57,6 +94,7 @@ Json status_json(const status_t& status) {
           {"session", session_json(status)},
           {"calibrated", status.calibrated != 0},
           {"calibration_request_id", status.calibration_request_id},
+          {"watch", watch_json(status)},
           {"undecodable", status.undecodable}};
 }
 

@@ -31,43 +31,81 @@ std::string uptime_text(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
+std::string colored_clock_state(std::int32_t state, const Palette& palette) {
+  const std::string word = fmt::format("{:<9}", clock_state_word(state));
+  if (state == clock_status_t::STEADY) return palette.green(word);
+  return state == clock_status_t::UNSTABLE ? palette.red(word) : palette.yellow(word);
+}
+
+/// Empty where the device sends no time of its own and there is nothing to say about that.
+std::string clock_text(std::string_view name, const clock_status_t& clock, const Palette& palette) {
+  const std::string says = printable(clock.text);
+  if (clock.state == clock_status_t::ABSENT) {
+    return says.empty() ? "" : fmt::format("{:<16}{}\n", name, says);
+  }
+  std::string text = fmt::format("{:<16}{}drift {:+.1f} ppm, jitter {:.1f} ms, holds for {:.0f} s",
+                                 name, colored_clock_state(clock.state, palette), clock.drift_ppm,
+                                 clock.jitter_ms, clock.span_s);
+  if (clock.jumps > 0) {
+    text +=
+        palette.yellow(fmt::format(", jumped {} time{}", clock.jumps, clock.jumps == 1 ? "" : "s"));
+  }
+  return text + (says.empty() ? "\n" : fmt::format("  {}\n", says));
+}
+
+/// The answer as it stands while collecting.
+std::string estimate_text(const status_t& status) {
+  if (!status.has_estimate) return "no estimate yet";
+  const std::string position = fmt::format("estimate x {:.1f}  y {:.1f}  z {:.1f} mm",
+                                           status.t_mm[0], status.t_mm[1], status.t_mm[2]);
+  if (status.sigma_rotation_deg < 0) return position + ", uncertainty not known yet";
+  return position + fmt::format(" +- {:.2f} mm, {:.2f} deg", status.sigma_translation_mm,
+                                status.sigma_rotation_deg);
+}
+
+std::string time_offset_text(const status_t& status) {
+  if (status.time_offset_sigma_s < 0) return "time offset not known yet";
+  return fmt::format("time offset {:.1f} +- {:.1f} ms, confidence {:.0f} %",
+                     1e3 * status.time_offset_s, 1e3 * status.time_offset_sigma_s,
+                     100 * status.time_offset_confidence);
+}
+
+std::string turned_text(const status_t& status) {
+  return fmt::format("turned {:.1f} deg up and down, {:.1f} left and right, {:.1f} roll",
+                     status.turned_deg[0], status.turned_deg[1], status.turned_deg[2]);
+}
+
+/// Whether the calibration in use still holds.
+std::string watch_text(const status_t& status, const Palette& palette) {
+  const std::string age = status.watch_age_s < 0
+                              ? "never checked yet"
+                              : fmt::format("checked {:.0f} s ago", status.watch_age_s);
+  const std::string says = printable(status.watch_text);
+  std::string text;
+  switch (status.watch_state) {
+    case status_t::WATCH_OFF:
+      return "";
+    case status_t::WATCH_HOLDS:
+      text = fmt::format("{}, {}", palette.green("holds"), age);
+      break;
+    case status_t::WATCH_BROKEN:
+      text = fmt::format("{}, {}",
+                         palette.red(fmt::format("NO LONGER HOLDS: turned by {:.1f} deg",
+                                                 status.watch_deviation_deg)),
+                         age);
+      break;
+    case status_t::WATCH_DOUBTFUL:
+      text = fmt::format("{}: seems turned by {:.1f} deg, {}", palette.yellow("doubtful"),
+                         status.watch_deviation_deg, age);
+      break;
+    default:
+      text = fmt::format("{}, {}", palette.yellow(watch_state_word(status.watch_state)), age);
+  }
+  if (!says.empty()) text += fmt::format("  {}", says);
+  return fmt::format("calibration     {}\n", text);
+}
+
 }  // namespace
-
-std::string session_state_word(std::int32_t state) {
-  switch (state) {
-    case status_t::IDLE:
-      return "idle";
-    case status_t::COLLECTING:
-      return "collecting";
-    case status_t::SOLVING:
-      return "solving";
-    case status_t::DONE:
-      return "done";
-    case status_t::REFUSED:
-      return "refused";
-    case status_t::CANCELLED:
-      return "cancelled";
-    default:
-      return fmt::format("state {}", state);
-  }
-}
-
-std::string device_state_word(std::int32_t state) {
-  switch (state) {
-    case device_status_t::ABSENT:
-      return "absent";
-    case device_status_t::WAITING:
-      return "waiting";
-    case device_status_t::STREAMING:
-      return "streaming";
-    case device_status_t::SILENT:
-      return "silent";
-    case device_status_t::FAILED:
-      return "failed";
-    default:
-      return fmt::format("state {}", state);
-  }
-}
 
 std::string status_text(const status_t& status, const Palette& palette) {
   std::string text = palette.bold(fmt::format("handeyed {}", printable(status.software_version))) +
@@ -79,13 +117,20 @@ std::string status_text(const status_t& status, const Palette& palette) {
   text += device_text("tracker", status.tracker, palette);
   text += device_text("camera", status.camera, palette);
   const std::string bodies = printable(status.tracked_bodies);
-  text += fmt::format("\nbodies in view  {}\n", bodies.empty() ? "none" : bodies);
+  text += '\n';
+  text += clock_text("tracker clock", status.tracker.clock, palette);
+  text += clock_text("camera clock", status.camera.clock, palette);
+  text += fmt::format("bodies in view  {}\n", bodies.empty() ? "none" : bodies);
   text += fmt::format("session         {}\n", session_state_word(status.session_state));
   if (status.session_state == status_t::COLLECTING || status.session_state == status_t::SOLVING) {
-    text += fmt::format("                {}\n", progress_text(status));
+    for (const std::string& line : {progress_text(status), estimate_text(status),
+                                    time_offset_text(status), turned_text(status)}) {
+      text += fmt::format("                {}\n", line);
+    }
   }
   text += fmt::format("calibrated      {}\n",
                       status.calibrated ? palette.green("yes, CAMERA_POSE is published") : "no");
+  text += watch_text(status, palette);
   if (status.undecodable > 0) {
     text += palette.yellow(fmt::format("{} messages on the daemon's channels were not of its types",
                                        status.undecodable)) +

@@ -4,19 +4,13 @@
 #include <string>
 #include <string_view>
 
-#include <handeye/device_status_t.hpp>
 #include <handeye/status_t.hpp>
 #include <nlohmann/json.hpp>
 
+#include "client/cli/status_words.hpp"
 #include "client/cli/terminal.hpp"
 
 namespace handeye::cli {
-
-/// "idle", "collecting", ...; "state 17" for one this version does not know.
-std::string session_state_word(std::int32_t state);
-
-/// "absent", "waiting", "streaming", "silent", "failed".
-std::string device_state_word(std::int32_t state);
 
 /// The daemon's state for a person, several lines, the last with its newline.
 std::string status_text(const status_t& status, const Palette& palette);

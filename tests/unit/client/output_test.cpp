@@ -141,6 +141,89 @@ TEST(StatusJson, CarriesNullForWhatIsNotKnownAndSurvivesBadText) {
   EXPECT_EQ(json.at("calibrated"), false);
 }
 
+status_t collecting_status() {
+  status_t status = test::idle_status();
+  status.session_state = status_t::COLLECTING;
+  status.has_estimate = true;
+  status.q_wxyz[0] = 1;
+  status.t_mm[2] = 301.26;
+  status.sigma_rotation_deg = 0.41;
+  status.sigma_translation_mm = 2.25;
+  status.time_offset_s = -0.0123;
+  status.time_offset_sigma_s = 0.0004;
+  status.time_offset_confidence = 0.85;
+  status.turned_deg[0] = 7.04;
+  status.guidance_code = status_t::GUIDE_SLIDE_IN_AND_OUT;
+  return status;
+}
+
+TEST(StatusText, ShowsTheAnswerAsItStands) {
+  const std::string text = status_text(collecting_status(), kPlain);
+  EXPECT_THAT(text, HasSubstr("estimate x 0.0  y 0.0  z 301.3 mm +- 2.25 mm, 0.41 deg"));
+  EXPECT_THAT(text, HasSubstr("time offset -12.3 +- 0.4 ms, confidence 85 %"));
+  EXPECT_THAT(text, HasSubstr("turned 7.0 deg up and down, 0.0 left and right, 0.0 roll"));
+  status_t early = collecting_status();
+  early.has_estimate = false;
+  early.time_offset_sigma_s = -1;
+  EXPECT_THAT(status_text(early, kPlain), HasSubstr("no estimate yet"));
+  EXPECT_THAT(status_text(early, kPlain), HasSubstr("time offset not known yet"));
+}
+
+TEST(StatusText, ShowsTheDevicesClocks) {
+  status_t status = test::idle_status();
+  EXPECT_THAT(status_text(status, kPlain), Not(HasSubstr("tracker clock")));
+  status.tracker.clock.state = clock_status_t::STEADY;
+  status.tracker.clock.drift_ppm = 12.34;
+  status.tracker.clock.jitter_ms = 0.8;
+  status.tracker.clock.span_s = 34;
+  EXPECT_THAT(
+      status_text(status, kPlain),
+      HasSubstr("tracker clock   steady   drift +12.3 ppm, jitter 0.8 ms, holds for 34 s\n"));
+  status.tracker.clock.jumps = 2;
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr(", jumped 2 times"));
+}
+
+TEST(StatusText, TellsWhetherTheCalibrationHolds) {
+  status_t status = test::idle_status();
+  EXPECT_THAT(status_text(status, kPlain), Not(HasSubstr("calibration ")));
+  status.calibrated = true;
+  status.watch_state = status_t::WATCH_HOLDS;
+  status.watch_age_s = 3;
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr("calibration     holds, checked 3 s ago\n"));
+  status.watch_state = status_t::WATCH_BROKEN;
+  status.watch_deviation_deg = 5.1;
+  EXPECT_THAT(status_text(status, kPlain),
+              HasSubstr("NO LONGER HOLDS: turned by 5.1 deg, checked 3 s ago"));
+  EXPECT_THAT(status_text(status, kColored), HasSubstr("\033[31;1mNO LONGER HOLDS"));
+  status.watch_state = status_t::WATCH_UNCHECKED;
+  status.watch_age_s = -1;
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr("unchecked, never checked yet"));
+}
+
+TEST(StatusJson, CarriesTheAnswerAsItStandsClocksAndWatch) {
+  status_t status = collecting_status();
+  status.watch_state = status_t::WATCH_DOUBTFUL;
+  status.camera.clock.state = clock_status_t::SETTLING;
+  const auto json = nlohmann::json::parse(dump_json(status_json(status)));
+  const auto& session = json.at("session");
+  EXPECT_EQ(session.at("hand_from_eye").at("t_mm").at(2), 301.26);
+  EXPECT_EQ(session.at("time_offset").at("confidence"), 0.85);
+  EXPECT_EQ(session.at("turned_deg").at(0), 7.04);
+  EXPECT_EQ(session.at("guidance_code"), "slide_in_and_out");
+  EXPECT_EQ(json.at("watch").at("state"), "doubtful");
+  EXPECT_EQ(json.at("camera").at("clock").at("state"), "settling");
+  const auto idle = nlohmann::json::parse(dump_json(status_json(test::idle_status())));
+  EXPECT_TRUE(idle.at("session").at("hand_from_eye").is_null());
+  EXPECT_TRUE(idle.at("session").at("time_offset").is_null());
+}
+
+TEST(StatusWords, NameWhatThisVersionDoesNotKnow) {
+  EXPECT_EQ(guide_word(17), "guide 17");
+  EXPECT_EQ(watch_state_word(-1), "state -1");
+  EXPECT_EQ(session_state_word(status_t::SOLVING), "solving");
+  EXPECT_EQ(guide_word(status_t::GUIDE_ROLL), "roll");
+}
+
 TEST(ProgressText, TellsSigmaAgainstTheWantedAndWhatToDo) {
   status_t status = test::idle_status();
   status.session_state = status_t::COLLECTING;

@@ -29,7 +29,7 @@ int free_port() {
 }
 
 device_status_t absent_device() {
-  device_status_t device;
+  device_status_t device{};
   device.state = device_status_t::ABSENT;
   device.rate_hz = 0;
   device.age_s = -1;
@@ -57,7 +57,7 @@ std::optional<std::string> lcm_problem() {
 }
 
 status_t idle_status() {
-  status_t status;
+  status_t status{};
   status.protocol_version = request_t::VERSION;
   status.software_version = "1.2.3";
   status.uptime_s = 10;
@@ -70,6 +70,7 @@ status_t idle_status() {
   status.progress = 0;
   status.sigma_rotation_deg = -1;
   status.sigma_translation_mm = -1;
+  status.time_offset_sigma_s = -1;
   status.wanted_sigma_rotation_deg = 0.3;
   status.wanted_sigma_translation_mm = 1.5;
   status.features_tracked = 0;

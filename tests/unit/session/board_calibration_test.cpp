@@ -200,16 +200,16 @@ TEST(BoardCalibration, ResultSaysWhereTheEyeLooked) {
 
 TEST(BoardGuidance, NamesTheFirstThingThatIsMissing) {
   Situation situation{.board = kBoard, .any_frame = true};
-  EXPECT_THAT(guidance_for(situation), testing::HasSubstr("show the board"));
-  situation.board_seen = true;
-  EXPECT_THAT(guidance_for(situation), testing::HasSubstr("not wholly in view"));
+  EXPECT_THAT(guidance_for(situation).words, testing::HasSubstr("show the board"));
+  situation.keyframes = 1;
+  EXPECT_THAT(guidance_for(situation).words, testing::HasSubstr("not wholly in view"));
   situation.board = test::charuco(8, 5, 7, 5);
-  EXPECT_THAT(guidance_for(situation), testing::HasSubstr("board not in view"));
+  EXPECT_THAT(guidance_for(situation).words, testing::HasSubstr("board not in view"));
   situation.state = ReconstructionState::kTracking;
-  EXPECT_EQ(guidance_for(situation), "tilt the scope up and down");
+  EXPECT_EQ(guidance_for(situation).words, "tilt the scope up and down");
   situation.rotation_coverage_deg = 30;
   situation.second_axis_deg = 8;
-  EXPECT_EQ(guidance_for(situation), "") << "against a board nothing needs to slide";
+  EXPECT_EQ(guidance_for(situation).words, "") << "against a board nothing needs to slide";
 }
 
 TEST(BoardStage, HandsOnTheCornersOfEveryImage) {

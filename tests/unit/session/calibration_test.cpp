@@ -1,89 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/calibration.hpp"
 
-#include <cmath>
-#include <random>
-
 #include <gtest/gtest.h>
 
 #include "daemon/session/guidance.hpp"
 #include "daemon/session/result_json.hpp"
+#include "tests/unit/session/tracked_scene.hpp"
 
 namespace handeye {
 namespace {
 
-constexpr double kFrameRate_hz = 25;
-constexpr double kTrackerRate_hz = 60;
-constexpr double kTimeOffset_s = 0.023;  // camera stamp minus tracker stamp of the same instant
-constexpr std::int64_t kStart_ns = 1'000'000'000'000;
-
-const CameraModel kCamera{640, 480, 600, 600, 320, 240, {-0.1, 0.01, 0, 0, 0}};
-
-Pose true_hand_from_eye() {
-  return make_pose(Eigen::Quaterniond(0.6, -0.3, 0.7, 0.2), {40, -60, 290});
-}
-
-/// The eye 80 mm above a bumpy surface: turns about three axes, shifts along three, not
-/// periodically.
-Pose room_from_eye(double t) {
-  const Eigen::Vector3d w(0.30 * std::sin(1.3 * t) + 0.05 * std::sin(3.1 * t),
-                          0.28 * std::sin(1.7 * t + 1) + 0.04 * std::sin(4.3 * t),
-                          0.25 * std::sin(0.9 * t + 2));
-  const Eigen::Matrix3d tilt = exp_so3(w);
-  Pose pose = Pose::Identity();
-  pose.linear() = tilt;
-  // Looks at the scene's middle from wherever it is, plus shifts of its own.
-  const Eigen::Vector3d shift(12 * std::sin(1.1 * t), 12 * std::sin(1.9 * t + 0.5),
-                              10 * std::sin(0.7 * t + 1));
-  pose.translation() = tilt * Eigen::Vector3d(0, 0, -80) + shift;
-  return pose;
-}
-
-struct Scene {
-  std::vector<Eigen::Vector3d> points_room;
-  std::mt19937 random{7};
-
-  Scene() {
-    std::uniform_real_distribution<double> side(-60, 60);
-    std::uniform_real_distribution<double> depth(-10, 10);
-    for (int i = 0; i < 500; ++i)
-      points_room.emplace_back(side(random), side(random), depth(random));
-  }
-
-  TrackedFrame frame(std::int64_t index) {
-    const double t = static_cast<double>(index) / kFrameRate_hz;
-    std::normal_distribution<double> noise_px(0, 0.2);
-    TrackedFrame tracked;
-    tracked.index = index;
-    tracked.timestamp_ns = kStart_ns + static_cast<std::int64_t>(1e9 * (t + kTimeOffset_s));
-    const Pose eye_from_room = room_from_eye(t).inverse();
-    for (std::size_t i = 0; i < points_room.size(); ++i) {
-      const Eigen::Vector3d point_eye = eye_from_room * points_room[i];
-      if (point_eye.z() < 10) continue;
-      const Eigen::Vector2d pixel = project<double>(kCamera, point_eye);
-      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > 639 || pixel.y() > 479) continue;
-      tracked.observations.push_back({static_cast<std::int64_t>(i),
-                                      pixel + Eigen::Vector2d(noise_px(random), noise_px(random))});
-    }
-    return tracked;
-  }
-
-  HandSample hand(std::int64_t index) {
-    const double t = static_cast<double>(index) / kTrackerRate_hz;
-    std::normal_distribution<double> noise(0, 1);
-    const auto noise3 = [&] {
-      return Eigen::Vector3d(noise(random), noise(random), noise(random));
-    };
-    HandSample sample;
-    sample.timestamp_ns = kStart_ns + static_cast<std::int64_t>(1e9 * t);
-    sample.tracked = true;
-    sample.room_from_hand = room_from_eye(t) * true_hand_from_eye().inverse();
-    sample.room_from_hand.linear() =
-        sample.room_from_hand.linear() * exp_so3(rad_from_deg(0.06) * noise3());
-    sample.room_from_hand.translation() += 0.15 * noise3();
-    return sample;
-  }
-};
+using namespace tracked;
 
 CalibrationOptions options() {
   CalibrationOptions options;
@@ -94,7 +21,7 @@ CalibrationOptions options() {
 }
 
 CalibrationResult calibrate(double duration_s, bool with_hand = true, bool with_frames = true) {
-  Scene scene;
+  TrackedScene scene;
   Calibration calibration(options());
   for (int k = 0; with_hand && k < duration_s * kTrackerRate_hz; ++k) {
     calibration.add_hand(scene.hand(k));
@@ -116,9 +43,13 @@ TEST(Calibration, FindsTransformationAndTimeOffset) {
   EXPECT_NEAR(*result.time_offset_s, kTimeOffset_s, 0.001);
   EXPECT_EQ(result.request_id, 42);
   EXPECT_EQ(result.frames.used, result.frames.received);
-  ASSERT_EQ(result.methods.size(), methods(ScaleMode::kUnknown).size());
-  EXPECT_EQ(result.methods.back().name, "maximum_likelihood");
-  for (const MethodResult& method : result.methods) EXPECT_TRUE(method.solution) << method.name;
+  EXPECT_EQ(result.method, "one_step");
+  const auto table = methods(ScaleMode::kUnknown);
+  ASSERT_EQ(result.methods.size(), table.size() + 1);
+  EXPECT_EQ(result.methods.back().name, "one_step");
+  for (const MethodResult& method : result.methods) {
+    EXPECT_TRUE(method.solution && method.sigma) << method.name;
+  }
 }
 
 TEST(Calibration, GivesTheSameAnswerTwice) {
@@ -142,7 +73,7 @@ TEST(Calibration, SaysWhichDeviceWasSilent) {
 }
 
 TEST(Calibration, ProgressTellsSigmaAndGuidesTheHand) {
-  Scene scene;
+  TrackedScene scene;
   Calibration calibration(options());
   EXPECT_EQ(guidance_for(calibration.situation()).code, GuideCode::kNoImage);
   for (int k = 0; k < 8 * kTrackerRate_hz; ++k) calibration.add_hand(scene.hand(k));
@@ -167,7 +98,7 @@ TEST(Calibration, ProgressTellsSigmaAndGuidesTheHand) {
 }
 
 TEST(Calibration, ClaimsNoSigmaThatLeavesTheLensOut) {
-  Scene scene;
+  TrackedScene scene;
   CalibrationOptions with_lens = options();
   with_lens.intrinsics = IntrinsicsMode::kRefine;
   Calibration calibration(with_lens);
@@ -186,7 +117,7 @@ TEST(Calibration, ClaimsNoSigmaThatLeavesTheLensOut) {
 
 // Under a lens of a wrong focal length the eye seems to turn otherwise than the hand.
 TEST(Calibration, BelievesNoLensThatTheHandContradicts) {
-  Scene scene;
+  TrackedScene scene;
   CalibrationOptions with_lens = options();
   with_lens.intrinsics = IntrinsicsMode::kRefine;
   Calibration calibration(with_lens);

@@ -13,6 +13,8 @@
 namespace handeye {
 namespace {
 
+constexpr double kChance = 2.0;  // standard deviations of the tracks' spread
+
 using RowByCommon = Eigen::Matrix<double, 6, kCommonUnknowns>;
 
 /// What the tracker's errors, whitened, move the common unknowns by.
@@ -74,27 +76,42 @@ CommonMatrix prior_part(const MetricProblem& problem, const CommonMatrix& base) 
   return sum;
 }
 
-/// What the errors along whole tracks contribute, as they were.
-CommonMatrix track_part(const MetricProblem& problem, const Eigen::MatrixXd& by_common) {
+/// What the errors along whole tracks, as they were, move the common unknowns by.
+std::vector<CommonVector> pulls_of_tracks(const MetricProblem& problem,
+                                          const Eigen::MatrixXd& by_common) {
   const MetricScene& scene = problem.scene();
   const double variance_px2 = problem.noise().image_px * problem.noise().image_px;
   const double errors = 2.0 * static_cast<double>(scene.observations.size()) -
                         3.0 * static_cast<double>(scene.points());
   const double taken = std::max(1.0, errors / image_freedom(problem));
-  return taken * taken * problem.elimination().spread_of_points(by_common / variance_px2);
+  return problem.elimination().pulls_of_points(by_common * (taken / variance_px2));
 }
 
-/// The first covariance of the unknowns listed, widened in every direction to the second where that
-/// is larger; zero elsewhere.
-CommonMatrix wider(const CommonMatrix& first, const CommonMatrix& second,
-                   const std::vector<Eigen::Index>& listed) {
-  CommonMatrix result = CommonMatrix::Zero();
-  const Eigen::MatrixXd base = first(listed, listed);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      second(listed, listed).eval(), base);
+/// The covariance of the unknowns listed, widened in every direction to what it is when the images'
+/// part comes from whole tracks, where that is more than chance in the number of tracks; zero
+/// elsewhere.
+CommonMatrix widened_by_tracks(const CommonMatrix& covariance, const CommonMatrix& of_images,
+                               const std::vector<CommonVector>& pulls,
+                               const std::vector<Eigen::Index>& listed) {
+  CommonMatrix spread = CommonMatrix::Zero();
+  for (const CommonVector& pull : pulls) spread += pull * pull.transpose();
+  const Eigen::MatrixXd base = covariance(listed, listed);
+  const CommonMatrix more = spread - of_images;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(more(listed, listed).eval(),
+                                                                        base);
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(base.rows());
+  for (Eigen::Index i = 0; i < factors.size(); ++i) {
+    double fourth_powers = 0;
+    for (const CommonVector& pull : pulls) {
+      fourth_powers += std::pow(pull(listed).dot(eigen.eigenvectors().col(i)), 4);
+    }
+    // Of a sum of squared normal deviates.
+    const double chance = kChance * std::sqrt(2.0 / 3.0 * fourth_powers);
+    if (eigen.eigenvalues()[i] > chance) factors[i] += eigen.eigenvalues()[i];
+  }
   const Eigen::MatrixXd directions = base * eigen.eigenvectors();
-  result(listed, listed) =
-      directions * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * directions.transpose();
+  CommonMatrix result = CommonMatrix::Zero();
+  result(listed, listed) = directions * factors.asDiagonal() * directions.transpose();
   return result;
 }
 
@@ -114,14 +131,14 @@ MetricCovariance metric_covariance(const MetricProblem& problem, double hand_fre
   MetricCovariance result;
   result.correlation_inflation = correlation_beyond_samples(problem);
   const double inflation = result.correlation_inflation * excess(problem, hand_freedom);
-  const CommonMatrix first =
+  const CommonMatrix of_independent_tracks =
       base - of_hands + inflation * (of_hands + shared_part(problem, answers));
-  const CommonMatrix second = first - of_images + track_part(problem, by_common);
   std::vector<Eigen::Index> estimated;
   for (Eigen::Index i = 0; i < kCommonUnknowns; ++i) {
     if (problem.estimates(i)) estimated.push_back(i);
   }
-  result.covariance = wider(first, second, estimated);
+  result.covariance = widened_by_tracks(of_independent_tracks, of_images,
+                                        pulls_of_tracks(problem, by_common), estimated);
   return result;
 }
 

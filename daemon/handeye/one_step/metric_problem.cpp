@@ -17,8 +17,19 @@ constexpr double kMaxDamping = 1e6;  // no step is small enough
 constexpr double kFirstDamping = 1e-3;
 constexpr double kSlow = 0.1;  // of a promise to the one before: linearise anew
 
+constexpr double kNearNoise = 0.1;  // relative: the equations still point the right way
+
 double square(double x) {
   return x * x;
+}
+
+bool is_near(double a, double b) {
+  return std::abs(a - b) < kNearNoise * b;
+}
+
+bool are_near(const MetricNoise& a, const MetricNoise& b) {
+  return is_near(a.image_px, b.image_px) && is_near(a.hand_rotation_rad, b.hand_rotation_rad) &&
+         is_near(a.hand_translation_mm, b.hand_translation_mm);
 }
 
 }  // namespace
@@ -102,6 +113,8 @@ bool MetricProblem::factorise(double damping) {
   }
   information.diagonal() *= 1.0 + damping;
   factor_.compute(information);
+  factor_noise_.reset();
+  if (damping == 0) factor_noise_ = noise_;
   return factor_.info() == Eigen::Success;
 }
 
@@ -116,11 +129,11 @@ void MetricProblem::set_noise(const MetricNoise& noise) {
                                 options_.hand_noise == HandNoiseSource::kMeasured);
 }
 
-bool MetricProblem::minimise(const MetricNoise& noise) {
+bool MetricProblem::minimise(MetricNoise noise) {
   set_noise(noise);
   if (!evaluate(state_, here_)) return false;
   at_elimination_ = false;
-  bool factorised = false;
+  bool factorised = eliminated_ && factor_noise_ && are_near(*factor_noise_, noise_);
   double damping = 0;
   double promised_before = 0;
   for (int i = 0; i < options_.max_iterations; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -22,7 +23,7 @@ class MetricProblem {
   /// Which frames' hands count: one a frame of the scene.
   void keep(std::vector<bool> kept) { hands_.kept = std::move(kept); }
   /// From where it stands; false where the equations determine nothing.
-  bool minimise(const MetricNoise& noise);
+  bool minimise(MetricNoise noise);
   /// Linearises everything where it stands, for `solve`; false as above.
   bool linearise_anew();
 
@@ -76,6 +77,7 @@ class MetricProblem {
   Place here_, next_;
   std::vector<HandRow> hand_rows_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
+  std::optional<MetricNoise> factor_noise_;  ///< nothing: none, or damped
   int iterations_{0};
 };
 

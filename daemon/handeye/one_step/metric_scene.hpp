@@ -23,6 +23,7 @@ inline constexpr Eigen::Index kEyeUnknowns = 6;
 inline constexpr Eigen::Index kCommonUnknowns = 13;  ///< X (w, dt), time offset [s], lens
 inline constexpr Eigen::Index kTimeInCommon = 6;
 inline constexpr Eigen::Index kLensInCommon = 7;
+using CommonVector = Eigen::Matrix<double, kCommonUnknowns, 1>;
 using CommonMatrix = Eigen::Matrix<double, kCommonUnknowns, kCommonUnknowns>;
 
 inline Eigen::Index unknowns_of_eye(std::size_t keyframe) {

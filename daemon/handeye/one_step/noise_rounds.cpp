@@ -13,7 +13,8 @@
 namespace handeye {
 namespace {
 
-constexpr double kSettledNoise = 0.01;  // relative change
+constexpr double kSettledNoise = 0.02;  // relative change
+constexpr int kMostLinearisations = 4;  // at the end
 constexpr double kFarthestFocal = 3.0;  // times, either way
 
 bool changes(double from, double to) {
@@ -58,6 +59,18 @@ bool lens_is_sound(const MetricProblem& problem) {
   return !camera.problem() && ratio < kFarthestFocal && ratio > 1.0 / kFarthestFocal;
 }
 
+/// Equations that were linearised elsewhere may promise too little where little is known: only with
+/// equations of its own is a place the minimum.
+bool settle_at_minimum(MetricProblem& problem) {
+  for (int again = 0; again < kMostLinearisations; ++again) {
+    if (!problem.linearise_anew()) return false;
+    const int before = problem.iterations();
+    if (!problem.minimise(problem.noise()) || !lens_is_sound(problem)) return false;
+    if (problem.iterations() == before) return true;
+  }
+  return problem.linearise_anew();
+}
+
 }  // namespace
 
 bool minimise_with_noise(MetricProblem& problem) {
@@ -71,7 +84,7 @@ bool minimise_with_noise(MetricProblem& problem) {
     problem.keep(std::move(kept));
     noise = seen;
   }
-  return problem.linearise_anew();
+  return settle_at_minimum(problem);
 }
 
 }  // namespace handeye

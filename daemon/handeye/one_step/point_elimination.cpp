@@ -135,10 +135,11 @@ std::vector<Eigen::Vector3d> PointElimination::point_steps(const ImageGradient& 
   return steps;
 }
 
-CommonMatrix PointElimination::spread_of_points(const Eigen::MatrixXd& by_gradient) const {
+std::vector<CommonVector> PointElimination::pulls_of_points(
+    const Eigen::MatrixXd& by_gradient) const {
   using CommonBy3 = Eigen::Matrix<double, kCommonUnknowns, 3>;
-  using CommonVector = Eigen::Matrix<double, kCommonUnknowns, 1>;
-  CommonMatrix spread = CommonMatrix::Zero();
+  std::vector<CommonVector> pulls;
+  pulls.reserve(scene_.points());
   for (std::size_t j = 0; j < scene_.points(); ++j) {
     CommonVector pull = CommonVector::Zero();
     CommonBy3 by_point = CommonBy3::Zero();
@@ -156,9 +157,9 @@ CommonMatrix PointElimination::spread_of_points(const Eigen::MatrixXd& by_gradie
       of_point += row.by_point.transpose() * row.error;
     }
     pull -= by_point * (inverse_roots_[j].transpose() * (inverse_roots_[j] * of_point));
-    spread += pull * pull.transpose();
+    pulls.push_back(pull);
   }
-  return spread;
+  return pulls;
 }
 
 }  // namespace handeye

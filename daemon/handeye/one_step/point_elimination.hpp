@@ -30,10 +30,9 @@ class PointElimination {
   std::vector<Eigen::Vector3d> point_steps(const ImageGradient& gradient,
                                            const Eigen::VectorXd& step) const;
 
-  /// Sum over the points of the outer products of what each point's errors, as a whole, move the
-  /// common unknowns by, the point following. `by_gradient`: how unknowns answer a gradient [px^2];
-  /// unknowns x common.
-  CommonMatrix spread_of_points(const Eigen::MatrixXd& by_gradient) const;
+  /// What each point's errors, as a whole, move the common unknowns by, the point following.
+  /// `by_gradient`: how unknowns answer a gradient [px^2]; unknowns x common.
+  std::vector<CommonVector> pulls_of_points(const Eigen::MatrixXd& by_gradient) const;
 
  private:
   using Matrix63 = Eigen::Matrix<double, 6, 3>;

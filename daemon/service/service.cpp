@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/service.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <handeye/version.hpp>
 #include <spdlog/spdlog.h>
@@ -20,6 +22,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kStatusPeriod{200};
 constexpr double kTrackerSilentAfter_s = 1;
 constexpr double kCameraSilentAfter_s = 1;
+// Whatever a calibration found: the watch is not to trust features more than that.
+constexpr double kLeastImageNoise_px = 0.4;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return 1e-9 * static_cast<double>(to_ns - from_ns);
@@ -86,6 +90,10 @@ Service::Service(const Config& config)
               [this](const FrameStamp& stamp) { tracker_.frame_taken(stamp); }),
       vision_(camera_.frames(), bus_, vision_options(config, camera_files_, channels_)),
       solver_(tracker_.hand_samples(), vision_.tracked(), solver_options(config, camera_files_)),
+      watch_(tracker_.watched_hand(), vision_.watched(),
+             [this](std::int64_t request_id, WatchState state) {
+               tracker_.set_watch_state({request_id, watch_code(state)});
+             }),
       tracker_reporter_(kTrackerSilentAfter_s),
       camera_reporter_(kCameraSilentAfter_s),
       started_ns_(monotonic_ns()) {
@@ -101,6 +109,7 @@ Service::Service(const Config& config)
 
 void Service::run() {
   solver_.start();
+  watch_.start();
   vision_.start();
   tracker_.start();
   camera_.start();
@@ -208,6 +217,17 @@ void Service::activate(const CalibrationResult& result) {
                 .hand_noise = {.rotation_rad = rad_from_deg(noise.rotation_deg),
                                .translation_mm = noise.translation_mm}});
   calibrated_request_id_ = result.request_id;
+  watch_.watch(
+      result.request_id,
+      {.hand_from_eye = result.solution.hand_from_eye,
+       .covariance = result.covariance,
+       .time_offset_s = result.time_offset_s.value_or(0),
+       .camera = result.camera,
+       .hand_noise = {rad_from_deg(
+                          std::max(noise.rotation_deg, config_.tracker.noise_rotation_deg)),
+                      std::max(noise.translation_mm, config_.tracker.noise_translation_mm)},
+       .image_noise_px = std::max(kLeastImageNoise_px, result.image_noise_px)});
+  vision_.begin_watching();
 }
 
 void Service::publish_result() {
@@ -248,6 +268,7 @@ status_t Service::status_message() {
   }
   status.calibrated = calibrated_request_id_ != 0;
   status.calibration_request_id = calibrated_request_id_;
+  write_watch(watch_.status(now_ns), status);
   status.undecodable = static_cast<std::int64_t>(bus_.undecodable());
   return status;
 }

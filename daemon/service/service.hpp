@@ -14,6 +14,7 @@
 #include "daemon/service/solver_thread.hpp"
 #include "daemon/service/tracker_thread.hpp"
 #include "daemon/service/vision_thread.hpp"
+#include "daemon/service/watch_thread.hpp"
 #include "daemon/session/session.hpp"
 #include "protocol/bus.hpp"
 #include "protocol/channels.hpp"
@@ -65,6 +66,7 @@ class Service {
   CameraThread camera_;
   VisionThread vision_;
   SolverThread solver_;
+  WatchThread watch_;
   DeviceStatusReporter tracker_reporter_;
   DeviceStatusReporter camera_reporter_;
   std::int64_t started_ns_;

@@ -180,6 +180,30 @@ void write_progress(const CalibrationProgress& progress, const ProgressTerms& te
   write_provisional(progress.provisional, status);
 }
 
+std::int32_t watch_code(WatchState state) {
+  switch (state) {
+    case WatchState::kOff:
+      return status_t::WATCH_OFF;
+    case WatchState::kUnchecked:
+      return status_t::WATCH_UNCHECKED;
+    case WatchState::kHolds:
+      return status_t::WATCH_HOLDS;
+    case WatchState::kDoubtful:
+      return status_t::WATCH_DOUBTFUL;
+    case WatchState::kBroken:
+      return status_t::WATCH_BROKEN;
+  }
+  return status_t::WATCH_UNCHECKED;
+}
+
+void write_watch(const WatchStatus& watch, status_t& status) {
+  status.watch_state = watch_code(watch.state);
+  status.watch_text = watch.text;
+  status.watch_deviation_deg = watch.deviation_deg;
+  status.watch_deviation_sigma_deg = watch.sigma_deg;
+  status.watch_age_s = watch.age_s;
+}
+
 std::string_view picture_text(ImageCondition condition) {
   switch (condition) {
     case ImageCondition::kGood:

@@ -7,6 +7,7 @@
 #include <handeye/request_t.hpp>
 #include <handeye/status_t.hpp>
 
+#include "daemon/session/calibration_watch.hpp"
 #include "daemon/session/progress.hpp"
 #include "daemon/session/session.hpp"
 #include "daemon/tracking/image_condition.hpp"
@@ -35,6 +36,12 @@ void write_progress(const CalibrationProgress& progress, const ProgressTerms& te
 
 /// Writes that none is running: nothing is known.
 void write_no_progress(status_t& status);
+
+/// Writes whether the calibration in use still holds.
+void write_watch(const WatchStatus& watch, status_t& status);
+
+/// One of status_t's WATCH constants.
+std::int32_t watch_code(WatchState state);
 
 /// What ails the camera's picture, in words: "the picture is dark". Empty for kGood.
 std::string_view picture_text(ImageCondition condition);

@@ -20,6 +20,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kWait{20};
 // A minute at 60 Hz, should the solver be that busy.
 constexpr std::size_t kHandSamples = 4096;
+// 8 s, should the watch be looking.
+constexpr std::size_t kWatchedHand = 512;
 // STATUS goes out five times a second.
 constexpr std::int64_t kClockReportPeriod_ns = 100'000'000;
 constexpr std::size_t kFrameStamps = 256;
@@ -50,6 +52,7 @@ TrackerThread::TrackerThread(const Config::Tracker& config,
       pose_publisher_(bus, channels.camera_pose, camera_poses),
       wanted_body_id_(config.body_id),
       hand_samples_(kHandSamples),
+      watched_hand_(kWatchedHand),
       calibrations_(4),
       watch_words_(64),
       frame_stamps_(kFrameStamps) {
@@ -172,9 +175,11 @@ void TrackerThread::distribute(const HandSample& sample) {
   const auto& calibration = pose_publisher_.calibration();
   if (!calibration) return;
   // Another body may be collected meanwhile than the one that is calibrated.
-  pose_publisher_.add_hand(calibration->body_id == hand_stream_.body_id()
-                               ? sample
-                               : hand_stream_.sample_of(calibration->body_id));
+  const HandSample calibrated = calibration->body_id == hand_stream_.body_id()
+                                    ? sample
+                                    : hand_stream_.sample_of(calibration->body_id);
+  pose_publisher_.add_hand(calibrated);
+  watched_hand_.push(calibrated);
 }
 
 std::string TrackerThread::tracked_bodies() const {

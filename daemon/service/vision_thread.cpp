@@ -15,6 +15,12 @@ namespace {
 constexpr std::chrono::milliseconds kWait{100};
 // Below 100 kB for any endoscope image up to 1280x720; see image_t.lcm.
 constexpr int kJpegQuality = 80;
+// Of a core that tracking for the watch may take, and how often it does: features are lost where
+// frames are too far apart, and more than this tells no more.
+constexpr double kWatchShare = 0.15;
+constexpr std::int64_t kShortestWatch_ns = 60'000'000;
+constexpr std::int64_t kLongestWatch_ns = 200'000'000;
+constexpr std::size_t kWatchedInFlight = 32;
 
 }  // namespace
 
@@ -22,7 +28,8 @@ VisionThread::VisionThread(Exchange<Frame>& frames, Bus& bus, Options options)
     : frames_(frames),
       options_(std::move(options)),
       jpeg_options_{cv::IMWRITE_JPEG_QUALITY, kJpegQuality},
-      tracked_(options_.tracked_in_flight) {
+      tracked_(options_.tracked_in_flight),
+      watched_(kWatchedInFlight) {
   if (options_.frame_channel) publisher_.emplace(bus, *options_.frame_channel);
 }
 
@@ -47,17 +54,54 @@ void VisionThread::run(const std::stop_token& stop) {
     if (frame == nullptr) continue;
     // First, for a search may take long, and a recording should have every frame.
     if (publisher_ && monotonic_ns() < record_until_ns_) publish(*frame);
-    const std::uint64_t calibration = collecting_;
-    const bool tracking = calibration != 0;
-    health_.add(tracking ? track(*frame, calibration) : inspector_.inspect(frame->grey));
-    if (tracking) interlaced_ = health_.recently_interlaced();
-    watch();
+    health_.add(look(*frame));
+    report_picture();
     frames_.release(frame);
   }
 }
 
+ImageCondition VisionThread::look(const Frame& frame) {
+  const std::uint64_t calibration = collecting_;
+  if (calibration != 0) {
+    watch_stage_.reset();
+    const ImageCondition condition = track(frame, calibration);
+    interlaced_ = health_.recently_interlaced();
+    return condition;
+  }
+  if (watching_ && is_watch_due(frame)) return track_for_watch(frame);
+  return inspector_.inspect(frame.grey);
+}
+
+/// Not while frames wait, and never for more than its share of the time.
+bool VisionThread::is_watch_due(const Frame& frame) const {
+  return frames_.waiting() == 0 && frame.timestamp_ns >= next_watch_ns_;
+}
+
+ImageCondition VisionThread::track_for_watch(const Frame& frame) {
+  if (!watch_stage_) {
+    watch_stage_ = make_image_stage({}, options_.mask.clone());
+    ++watch_tracking_;
+  }
+  const double before_ms = watch_stage_->time_ms();
+  TrackedItem* item = watched_.acquire();
+  TrackedFrame& target = item != nullptr ? item->frame : watch_overflow_;
+  watch_stage_->process(frame, target);
+  const double spent_ms = watch_stage_->time_ms() - before_ms;
+  next_watch_ns_ =
+      frame.timestamp_ns + std::clamp(static_cast<std::int64_t>(1e6 * spent_ms / kWatchShare),
+                                      kShortestWatch_ns, kLongestWatch_ns);
+  const ImageCondition condition = target.condition;
+  if (item == nullptr) {
+    watched_.count_drop();
+  } else {
+    item->calibration = watch_tracking_;
+    watched_.commit(item);
+  }
+  return condition;
+}
+
 /// Says it when something begins or ceases to ail the picture; blur comes and goes with the hand.
-void VisionThread::watch() {
+void VisionThread::report_picture() {
   ImageCondition now = health_.recent();
   if (now == ImageCondition::kGood && interlaced_) now = ImageCondition::kInterlaced;
   const ImageCondition before = picture_.exchange(now);

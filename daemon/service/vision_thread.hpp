@@ -30,7 +30,7 @@ struct TrackedItem {
 
 /// Takes frames from the camera; while recording publishes those of a camera that is not on LCM
 /// already; while collecting tracks features, or finds a board's corners, and hands them to the
-/// solver.
+/// solver. In between tracks for the watch over the calibration in use, as far as there is time.
 class VisionThread {
  public:
   struct Options {
@@ -50,10 +50,14 @@ class VisionThread {
   /// that the TrackedItems of this calibration will carry.
   std::uint64_t begin_collecting(const std::optional<Board>& board);
   void end_collecting() { collecting_ = 0; }
+  /// From the main thread: while nothing is collected, track for the watch.
+  void begin_watching() { watching_ = true; }
   void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
 
   /// The solver's end of the tracked frames.
   Exchange<TrackedItem>& tracked() { return tracked_; }
+  /// The watch's end; TrackedItem::calibration is new whenever features are numbered anew.
+  Exchange<TrackedItem>& watched() { return watched_; }
   int features_tracked() const { return features_tracked_; }
   std::int64_t frames_collected() const { return frames_collected_; }
   /// What ails most of the last images, while collecting or not; kInterlaced: nothing else does.
@@ -63,8 +67,11 @@ class VisionThread {
   void run(const std::stop_token& stop);
   void begin_stage(std::uint64_t calibration);
   ImageCondition track(const Frame& frame, std::uint64_t calibration);
+  bool is_watch_due(const Frame& frame) const;
+  ImageCondition track_for_watch(const Frame& frame);
+  ImageCondition look(const Frame& frame);
   void catch_up_on_descriptions(TrackedFrame& tracked);
-  void watch();
+  void report_picture();
   void process(const Frame& frame, TrackedFrame& tracked);
   void publish(const Frame& frame);
 
@@ -82,15 +89,22 @@ class VisionThread {
   ImageHealth health_;
   bool interlaced_{false};  ///< as last seen: only while tracking can it be told
 
+  std::unique_ptr<ImageStage> watch_stage_;
+  std::uint64_t watch_tracking_{0};
+  std::int64_t next_watch_ns_{0};
+  TrackedFrame watch_overflow_;
+
   std::uint64_t last_calibration_{0};
   std::mutex board_mutex_;  ///< taken once per calibration
   std::optional<Board> board_;
   std::atomic<std::uint64_t> collecting_{0};  ///< the running calibration's number; 0: none
+  std::atomic<bool> watching_{false};
   std::atomic<std::int64_t> record_until_ns_{0};
   std::atomic<int> features_tracked_{0};
   std::atomic<std::int64_t> frames_collected_{0};
   std::atomic<ImageCondition> picture_{ImageCondition::kGood};
   Exchange<TrackedItem> tracked_;
+  Exchange<TrackedItem> watched_;
   std::jthread thread_;
 };
 

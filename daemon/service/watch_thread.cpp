@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/watch_thread.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/bus.hpp"
+
+namespace handeye {
+namespace {
+
+constexpr std::chrono::milliseconds kWait{100};
+constexpr int kLowestPriority = 19;
+
+}  // namespace
+
+WatchThread::WatchThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
+                         Listener listener)
+    : hand_samples_(hand_samples), tracked_(tracked), listener_(std::move(listener)), tasks_(4) {}
+
+void WatchThread::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void WatchThread::watch(std::int64_t request_id, const WatchedCalibration& calibration) {
+  tasks_.push({request_id, calibration});
+}
+
+void WatchThread::run(const std::stop_token& stop) {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLowestPriority);
+  while (!stop.stop_requested()) {
+    TrackedItem* item = tracked_.take(kWait);
+    while (const auto task = tasks_.pop()) begin(*task);
+    while (const auto sample = hand_samples_.pop()) {
+      if (watch_) watch_->add_hand(*sample);
+    }
+    if (item != nullptr) {
+      if (watch_) take_in(*item);
+      tracked_.release(item);
+    }
+    tell();
+  }
+}
+
+void WatchThread::begin(const Task& task) {
+  request_id_ = task.request_id;
+  watch_ = std::make_unique<CalibrationWatch>(task.calibration);
+}
+
+void WatchThread::take_in(TrackedItem& item) {
+  if (std::exchange(tracking_, item.calibration) != item.calibration) watch_->forget_features();
+  watch_->add_frame(item.frame);
+}
+
+void WatchThread::tell() {
+  if (!watch_) return;
+  const std::int64_t now_ns = monotonic_ns();
+  WatchStatus now = watch_->status(now_ns);
+  WatchState before{};
+  {
+    const std::scoped_lock lock(status_mutex_);
+    before = std::exchange(status_, now).state;
+    status_at_ns_ = now_ns;
+  }
+  if (before == now.state) return;
+  listener_(request_id_, now.state);
+  if (now.state == WatchState::kBroken) {
+    spdlog::warn("calibration {}: {}", request_id_, now.text);
+  } else if (before == WatchState::kBroken) {
+    spdlog::info("calibration {}: holds again", request_id_);
+  }
+}
+
+WatchStatus WatchThread::status(std::int64_t now_ns) const {
+  const std::scoped_lock lock(status_mutex_);
+  WatchStatus status = status_;
+  if (status.age_s >= 0) status.age_s += 1e-9 * static_cast<double>(now_ns - status_at_ns_);
+  return status;
+}
+
+}  // namespace handeye

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "daemon/session/calibration_watch_frame.hpp"
+
+namespace handeye {
+
+// What is assumed of the depth of a scene, in 1/mm: hardly anything, only so that none is at
+// infinity or in the lens.
+inline constexpr double kUsualInverseDepth = 0.01;
+inline constexpr double kInverseDepthSigma = 0.03;
+inline constexpr double kLeastInverseDepth = 2e-4;
+inline constexpr double kLargestInverseDepth = 0.3;
+/// Beside residuals on the image plane at focal length 1, with an error of a thousandth.
+inline constexpr double kInverseDepthWeight = 1e-6 / (kInverseDepthSigma * kInverseDepthSigma);
+
+/// What is adjusted: hand_from_eye, the time offset's correction, where the eye was at each frame,
+/// and the points.
+struct WatchUnknowns {
+  Pose start{Pose::Identity()};  ///< hand_from_eye, that it is held near
+  Pose hand_from_eye{Pose::Identity()};
+  double time_offset_correction_s{0};
+  std::vector<Pose> room_from_eye;
+  std::vector<WatchTrack> tracks;
+};
+
+/// Standard deviations that residuals are weighed with.
+struct WatchWeights {
+  double image{0.001};          ///< of a ray, per axis, at focal length 1
+  double robust_image{0.004};   ///< where the loss bends (Cauchy), likewise
+  double time_offset_s{0.002};  ///< of the correction before the data
+  // What the motion does not tell stays where it started; what it tells is not touched.
+  double hold_rotation_rad{0.3};
+  double hold_translation_mm{30.0};
+};
+
+/// Unknowns that all frames share: w [rad] and dt [mm] of hand_from_eye, the time offset [s].
+inline constexpr int kWatchCommon = 7;
+
+/// Gauss-Newton's normal equations with the points eliminated. Of frame k the six unknowns from 6 k
+/// are (w [rad], dc [mm]) of room_from_eye, R = Exp(w) R, centre + dc, in the room; the common ones
+/// are last.
+class WatchEquations {
+ public:
+  WatchEquations(std::span<const WatchFrame> frames, const WatchUnknowns& at,
+                 const WatchWeights& weights, double damping);
+
+  /// Moves the eyes and what they share by the step; the points go with the eye that they are
+  /// anchored in. False where the equations are not positive definite.
+  bool step(WatchUnknowns& unknowns) const;
+
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+ private:
+  void add_track(const WatchTrack& track, const WatchUnknowns& at, const WatchWeights& weights);
+  void add_hand(int frame, const WatchFrame& hand, const WatchUnknowns& at);
+  void add_holds(const WatchUnknowns& at, const WatchWeights& weights);
+
+  Eigen::MatrixXd matrix_;  ///< lower half
+  Eigen::VectorXd right_;
+};
+
+/// Adjusts the points alone to the eyes as they are. The elimination is then exact also for a long
+/// step: together with hand_from_eye the whole scene turns, which points in the room follow badly
+/// to first order.
+void settle_points(const WatchWeights& weights, WatchUnknowns& unknowns);
+
+/// How far the eye of a frame is from where hand and hand_from_eye put it: (w [rad], dc [mm]) in
+/// the room; and what it means.
+struct WatchHandResidual {
+  Vector6d residual{Vector6d::Zero()};
+  Matrix6d information{Matrix6d::Zero()};  ///< inverse covariance, from the hand's noise
+  Eigen::Matrix<double, 6, kWatchCommon> by_common{
+      Eigen::Matrix<double, 6, kWatchCommon>::Zero()};  ///< of where the eye is put
+};
+WatchHandResidual watch_hand_residual(const WatchFrame& frame, const Pose& room_from_eye,
+                                      const WatchUnknowns& at);
+
+/// A point's ray in an eye. Nothing: not before it.
+std::optional<Eigen::Vector2d> watch_ray(const WatchTrack& track, const Pose& room_from_eye);
+
+/// Robust cost of images and hand together, in units of half a squared standard deviation.
+double watch_cost(std::span<const WatchFrame> frames, const WatchUnknowns& at,
+                  const WatchWeights& weights);
+
+}  // namespace handeye

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/session/calibration_watch_evidence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace handeye {
+namespace {
+
+/// Of chi2 with 1, 2, 3 degrees of freedom, passed by chance once in 10^9: a watch looks once a
+/// second for years, and sigmas are not that well known.
+constexpr std::array<double, 4> kContradiction{0.0, 37.3, 41.4, 44.8};
+
+/// In chi2, between a fit held near the calibration and one that is free.
+constexpr double kLeastGain = 50.0;
+
+/// A deviation within the directions whose sigma is small enough.
+struct Seen {
+  double size{0};
+  double sigma{0};
+  double chi2{0};
+  std::size_t directions{0};
+
+  bool contradicts(double least) const {
+    return directions > 0 && size > least && chi2 > kContradiction[directions];
+  }
+};
+
+Seen look_at(const Eigen::Vector3d& deviation, const Eigen::Matrix3d& covariance,
+             double most_sigma) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  Seen seen;
+  for (int i = 0; i < 3; ++i) {
+    const double variance = eigen.eigenvalues()(i);
+    if (!(variance < most_sigma * most_sigma)) continue;
+    const double along = eigen.eigenvectors().col(i).dot(deviation);
+    seen.size += along * along;
+    seen.sigma += variance;
+    seen.chi2 += along * along / variance;
+    ++seen.directions;
+  }
+  seen.size = std::sqrt(seen.size);
+  seen.sigma = std::sqrt(seen.sigma);
+  return seen;
+}
+
+}  // namespace
+
+WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix6d& covariance,
+                    const WatchEvidenceOptions& options) {
+  const Matrix6d both = fit.covariance + covariance;
+  const Seen turn =
+      look_at(log_so3(fit.hand_from_eye.linear() * hand_from_eye.linear().transpose()),
+              both.topLeftCorner<3, 3>(), rad_from_deg(options.seen_deg));
+  const Seen shift = look_at(fit.hand_from_eye.translation() - hand_from_eye.translation(),
+                             both.bottomRightCorner<3, 3>(), options.seen_mm);
+  WatchEvidence evidence;
+  evidence.deviation_deg = deg_from_rad(turn.size);
+  evidence.sigma_deg = deg_from_rad(turn.sigma);
+  evidence.deviation_mm = shift.size;
+  evidence.measured = turn.directions > 0;
+  if (!explains(fit)) return evidence;
+  // Also where the fit stopped short of the best: what was gained without the calibration counts.
+  const double gained =
+      2.0 * (fit.held_cost - fit.cost) / std::max({1.0, fit.hand_excess, fit.image_excess});
+  evidence.turned = turn.contradicts(rad_from_deg(options.turned_deg));
+  if ((evidence.turned || shift.contradicts(options.moved_mm)) && gained > kLeastGain) {
+    evidence.kind = WatchEvidence::Kind::kContradicts;
+  } else if (turn.directions == 3) {
+    evidence.kind = WatchEvidence::Kind::kAgrees;
+  }
+  return evidence;
+}
+
+}  // namespace handeye

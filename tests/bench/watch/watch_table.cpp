@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the watch over a calibration does: watch_table [SEEDS [MINUTES]].
+// Unchanged heads for MINUTES each, then heads that were turned or moved, over SEEDS seeds.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tests/unit/session/watch_scene.hpp"
+
+namespace handeye::test {
+namespace {
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Unchanged {
+  std::string_view name;
+  void (*apply)(WatchSceneOptions& options);
+};
+
+const std::array<Unchanged, 6> kUnchanged{{
+    {"everything", [](WatchSceneOptions&) {}},
+    {"0.3 px, 25 Hz", [](WatchSceneOptions& o) { o.noise_px = 0.3, o.rate_hz = 25; }},
+    {"0.5 px, drift 0.05", [](WatchSceneOptions& o) { o.noise_px = 0.5, o.drift_px = 0.05; }},
+    {"pivots, turns, one axis, sliding",
+     [](WatchSceneOptions& o) {
+       o.motions = {MotionKind::kPivot, MotionKind::kTurning, MotionKind::kOneAxis,
+                    MotionKind::kSliding};
+     }},
+    {"small and trembling",
+     [](WatchSceneOptions& o) {
+       o.motions = {MotionKind::kSmall, MotionKind::kTrembling, MotionKind::kPause};
+     }},
+    {"slow errors 0.06 deg, 0.15 mm",
+     [](WatchSceneOptions& o) { o.hand_slow_deg = 0.06, o.hand_slow_mm = 0.15; }},
+}};
+
+void watch_unchanged(const Unchanged& scene, int seeds, double minutes) {
+  int doubtful = 0, broken = 0;
+  double holding_s = 0, all_s = 0, looks = 0, largest_deg = 0;
+  const double began_s = now_s();
+  for (int seed = 0; seed < seeds; ++seed) {
+    WatchSceneOptions options{.seed = static_cast<unsigned>(seed)};
+    scene.apply(options);
+    WatchScene world(options);
+    CalibrationWatch watch(world.calibration());
+    bool any_doubt = false, any_break = false;
+    while (world.time_s() < 60.0 * minutes) {
+      const WatchStatus status = watch.status(world.next(watch));
+      any_doubt |= status.state == WatchState::kDoubtful;
+      any_break |= status.state == WatchState::kBroken;
+      holding_s += status.state == WatchState::kHolds ? 1.0 / options.rate_hz : 0.0;
+      all_s += 1.0 / options.rate_hz;
+      largest_deg = std::max(largest_deg, status.deviation_deg);
+    }
+    looks += watch.looks();
+    doubtful += any_doubt ? 1 : 0;
+    broken += any_break ? 1 : 0;
+  }
+  const double spent_s = now_s() - began_s;
+  fmt::print(
+      "unchanged  {:34} {:3} x {:.0f} min: broken {}, doubtful {}, holds {:.0f} % of the "
+      "time, largest deviation {:.2f} deg, {:.1f} ms a look and all else\n",
+      scene.name, seeds, minutes, broken, doubtful, 100.0 * holding_s / all_s, largest_deg,
+      1e3 * spent_s / looks);
+}
+
+struct Changed {
+  std::string_view name;
+  Eigen::Vector3d turn_deg;
+  Eigen::Vector3d shift_mm;
+};
+
+void watch_changed(const Changed& change, std::vector<MotionKind> motions, std::string_view how,
+                   int seeds) {
+  std::vector<double> delays_s;
+  int never = 0, early = 0;
+  const double began_s = now_s();
+  for (int seed = 0; seed < seeds; ++seed) {
+    WatchSceneOptions options{.seed = static_cast<unsigned>(1000 + seed)};
+    options.motions = motions;
+    options.turned_at_s = 20.0 + 0.37 * seed;
+    options.turn_deg = change.turn_deg;
+    options.shift_mm = change.shift_mm;
+    WatchScene world(options);
+    CalibrationWatch watch(world.calibration());
+    bool found = false;
+    while (!found && world.time_s() < options.turned_at_s + 120.0) {
+      const WatchStatus status = watch.status(world.next(watch));
+      found = status.state == WatchState::kBroken;
+    }
+    early += found && world.time_s() < options.turned_at_s ? 1 : 0;
+    if (found) delays_s.push_back(world.moved_since_turn_s());
+    never += found ? 0 : 1;
+  }
+  std::ranges::sort(delays_s);
+  const auto within = std::ranges::count_if(delays_s, [](double delay) { return delay <= 10.0; });
+  fmt::print(
+      "{:16} {:10}: within 10 s of motion {}/{}, never in 120 s {}, too early {}; median "
+      "{:.1f} s, slowest {:.1f} s ({:.1f} s)\n",
+      change.name, how, within, seeds, never, early,
+      delays_s.empty() ? 0.0 : delays_s[delays_s.size() / 2],
+      delays_s.empty() ? 0.0 : delays_s.back(), now_s() - began_s);
+}
+
+}  // namespace
+}  // namespace handeye::test
+
+int main(int argc, char** argv) {
+  using namespace handeye::test;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const int seeds = argc > 1 ? std::atoi(argv[1]) : 20;
+  const double minutes = argc > 2 ? std::atof(argv[2]) : 30.0;
+  using Eigen::Vector3d;
+  const std::vector<Changed> changes{
+      {"roll 5 deg", {0, 0, 5}, {0, 0, 0}},     {"tilt 1 deg", {1, 0, 0}, {0, 0, 0}},
+      {"turn 1 deg", {0, 1, 0}, {0, 0, 0}},     {"roll 2 deg", {0, 0, 2}, {0, 0, 0}},
+      {"roll 45 deg", {0, 0, 45}, {0, 0, 0}},   {"roll 90 deg", {0, 0, 90}, {0, 0, 0}},
+      {"roll 180 deg", {1, 0, 179}, {0, 0, 0}}, {"tilt 12 deg", {12, 3, 0}, {2, 0, 0}},
+      {"mounted anew", {1, 1, 140}, {1, 2, 4}}, {"moved 5 mm", {0, 0, 0}, {3, 0, 4}}};
+  for (const Changed& change : changes) {
+    watch_changed(change, {MotionKind::kFree}, "free", seeds);
+    watch_changed(change, {kEveryMotion.begin(), kEveryMotion.end()}, "every", seeds);
+  }
+  for (const Unchanged& scene : kUnchanged) watch_unchanged(scene, seeds, minutes);
+}

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <future>
 
+#include <fmt/format.h>
+
 #include "daemon/session/calibration_snapshot.hpp"
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/lens_sensitivity.hpp"
@@ -104,10 +106,18 @@ void write_one_step(const OneStepEstimate& one_step, const Estimate& found,
   result.lens->sigma = lens_sigma_of(one_step, reconstruction);
 }
 
+/// Reasons whose advice does not name one motion already.
+bool leaves_the_motion_open(Reason reason) {
+  return reason == Reason::kSingleAxis || reason == Reason::kUncertain;
+}
+
 std::string advice_for(const Finding& finding, const std::optional<Board>& board,
                        const Estimate& found) {
   std::string advice =
       board ? reason_advice(finding.reason, *board) : std::string(reason_advice(finding.reason));
+  if (leaves_the_motion_open(finding.reason) && finding.missing != MissingMotion::kNone) {
+    advice += fmt::format(" What would help most: {}.", words(finding.missing));
+  }
   if (found.stood_still && found.likelihood) {
     if (!advice.empty()) advice += ' ';
     advice += kStoodStillAdvice;

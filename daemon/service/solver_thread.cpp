@@ -87,6 +87,10 @@ void SolverThread::start() {
 }
 
 void SolverThread::begin(const StartOptions& options, std::uint64_t calibration) {
+  {
+    const std::scoped_lock lock(progress_mutex_);
+    progress_ = {};
+  }
   commands_.push({Command::Kind::kBegin, options, calibration});
 }
 

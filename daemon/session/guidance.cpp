@@ -99,7 +99,7 @@ Guidance guidance_for(const Situation& situation, const Provisional& so_far) {
   }
   Guidance view = situation.board ? about_board(situation) : about_scene(situation);
   if (view.code != GuideCode::kNone) return view;
-  return ask_for(so_far.solution ? so_far.missing : missing_by_path(situation));
+  return ask_for(so_far.missing.value_or(missing_by_path(situation)));
 }
 
 }  // namespace handeye

@@ -10,6 +10,18 @@
 namespace handeye {
 namespace {
 
+// The covariance is linearised: beyond this it means nothing, and the answer may be anywhere.
+constexpr double kMeaningful_deg = 5;
+
+/// Whether there is an answer at all in this motion, if only a rough one.
+bool is_answer(const Judgement& judgement) {
+  const bool turned_enough = judgement.problem == MotionProblem::kNone ||
+                             judgement.problem == MotionProblem::kUncertain ||
+                             judgement.problem == MotionProblem::kFixedPoint;
+  return turned_enough && judgement.halves_chi2.has_value() && judgement.covariance.allFinite() &&
+         sigma_rotation_deg(judgement.covariance) <= kMeaningful_deg;
+}
+
 MethodSigma sigma_of(const Matrix6d& covariance) {
   return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
 }
@@ -45,7 +57,6 @@ void write_time_offset(const Estimate& so_far, Provisional& answer) {
 
 void write_sigma(const ProvisionalSnapshot& snapshot, const Estimate& so_far,
                  const Matrix6d& covariance, Provisional& answer) {
-  if (!covariance.allFinite()) return;
   if (!snapshot.lens_given && hand_contradicts_lens(so_far.observations)) return;
   answer.sigma_beside_lens = sigma_of(covariance);
   if (snapshot.lens_covariance) answer.sigma = sigma_of(covariance + *snapshot.lens_covariance);
@@ -61,8 +72,9 @@ Provisional provisional(const ProvisionalSnapshot& snapshot) {
   if (!so_far.likelihood) return answer;
   const Judgement judgement =
       judge(so_far.observations, so_far.likelihood, judge_options(snapshot, so_far));
-  answer.solution = so_far.likelihood->solution;
   answer.missing = judgement.missing;
+  if (!is_answer(judgement)) return answer;
+  answer.solution = so_far.likelihood->solution;
   answer.turned_deg = turns_of(so_far);
   write_sigma(snapshot, so_far, judgement.covariance, answer);
   return answer;

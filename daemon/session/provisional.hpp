@@ -28,7 +28,7 @@ struct ProvisionalSnapshot {
 /// The answer as it stands while collecting.
 struct Provisional {
   std::int64_t frames{0};                   ///< it rests on
-  std::optional<HandEyeSolution> solution;  ///< nothing: none yet
+  std::optional<HandEyeSolution> solution;  ///< nothing: none yet, or none to be shown
   double time_offset_s{0};                  ///< meaningless without a sigma
   std::optional<double> time_offset_sigma_s;
   double time_offset_confidence{0};  ///< 0..1, as TimeOffset's
@@ -39,7 +39,7 @@ struct Provisional {
   /// The same without the lens's part: a whole answer is worth trying when this is small enough.
   /// Nothing also where the hand contradicts the lens.
   std::optional<MethodSigma> sigma_beside_lens;
-  MissingMotion missing{MissingMotion::kNone};          ///< kNone also where nothing is known yet
+  std::optional<MissingMotion> missing;                 ///< nothing: not known yet
   Eigen::Vector3d turned_deg{Eigen::Vector3d::Zero()};  ///< rms about the camera's x, y, z
 };
 

@@ -41,6 +41,7 @@ testing::AssertionResult Room::start_simulator(const SimulatorSettings& settings
                                  "--camera-out",   path("camera.json"),
                                  "--truth-out",    path("truth.json")};
   if (!settings.board.empty()) words.insert(words.end(), {"--board", settings.board});
+  words.insert(words.end(), settings.extra_words.begin(), settings.extra_words.end());
   simulator_ = std::make_unique<Process>(words);
   const auto deadline = steady_clock::now() + kStartTimeout;
   while (!ends_with_brace(path("camera.json")) || !ends_with_brace(path("truth.json"))) {

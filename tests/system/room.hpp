@@ -19,7 +19,8 @@ struct SimulatorSettings {
   std::uint64_t seed{1};
   std::string motion{"free"};
   double camera_rate_hz{20};
-  std::string board;  ///< the scene; empty: tissue
+  std::string board;                     ///< the scene; empty: tissue
+  std::vector<std::string> extra_words;  ///< of the command line
 };
 
 /// What the daemon's configuration may differ in; it is written beside camera.json.

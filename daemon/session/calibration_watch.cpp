@@ -2,6 +2,7 @@
 #include "daemon/session/calibration_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,9 @@ constexpr std::size_t kHandSamples = 1024;
 /// Looks that fit nothing, one in so many of which is followed by a search.
 constexpr int kSearchEvery = 3;
 
+/// A calibration is never held more tightly than this.
+constexpr double kTightest_rad = 0.0007;
+constexpr double kTightest_mm = 0.3;
 /// Two looks at one turn of the head agree within this.
 constexpr double kSameTurn_rad = 0.5 * kPi / 180.0;
 
@@ -24,8 +28,13 @@ double seconds(std::int64_t ns) {
 
 WatchFitOptions fit_options(const WatchedCalibration& calibration, const WatchOptions& options) {
   const double focal_px = 0.5 * (calibration.camera.fx + calibration.camera.fy);
-  return {.image_noise = calibration.image_noise_px / focal_px,
-          .time_offset_s = options.time_offset_sigma_s};
+  return {
+      .image_noise = calibration.image_noise_px / focal_px,
+      .time_offset_s = options.time_offset_sigma_s,
+      .held_rotation_rad = std::max(
+          kTightest_rad, std::sqrt(calibration.covariance.topLeftCorner<3, 3>().trace() / 3.0)),
+      .held_translation_mm = std::max(
+          kTightest_mm, std::sqrt(calibration.covariance.bottomRightCorner<3, 3>().trace() / 3.0))};
 }
 
 }  // namespace

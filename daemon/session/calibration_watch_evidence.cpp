@@ -10,12 +10,12 @@
 namespace handeye {
 namespace {
 
-/// Of chi2 with 1, 2, 3 degrees of freedom, passed by chance once in 10^9: a watch looks once a
-/// second for years, and sigmas are not that well known.
-constexpr std::array<double, 4> kContradiction{0.0, 37.3, 41.4, 44.8};
+/// Of chi2 with 1, 2, 3 degrees of freedom, passed by chance once in 10^4; beside it stands what
+/// is gained, below.
+constexpr std::array<double, 4> kContradiction{0.0, 15.1, 18.4, 21.1};
 
 /// In chi2, between a fit held near the calibration and one that is free.
-constexpr double kLeastGain = 50.0;
+constexpr double kLeastGain = 30.0;
 
 /// A deviation within the directions whose sigma is small enough.
 struct Seen {
@@ -67,8 +67,8 @@ WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix
   const double gained =
       2.0 * (fit.held_cost - fit.cost) / std::max({1.0, fit.hand_excess, fit.image_excess});
   evidence.turned = turn.contradicts(rad_from_deg(options.turned_deg));
-  if ((evidence.turned || shift.contradicts(options.moved_mm)) && gained > kLeastGain) {
-    evidence.kind = WatchEvidence::Kind::kContradicts;
+  if (evidence.turned || shift.contradicts(options.moved_mm)) {
+    if (gained > kLeastGain) evidence.kind = WatchEvidence::Kind::kContradicts;
   } else if (turn.directions == 3) {
     evidence.kind = WatchEvidence::Kind::kAgrees;
   }

@@ -19,6 +19,8 @@ constexpr double kBetweenProvisionals_ms = 500;
 constexpr double kBetweenProvisionals_solves = 4;
 constexpr double kBetweenAttempts_ms = 2000;
 constexpr double kBetweenAttempts_solves = 2;
+// Adjusting everything now and then leaves less to do when the answer is asked for.
+constexpr double kBetweenAdjustments_ms = 5000;
 // The provisional answer lacks the global adjustment, and half of the frames.
 constexpr double kAttemptMargin = 1.1;
 
@@ -64,7 +66,9 @@ struct SolverThread::Running {
   Provisional last_provisional;
   SteadyGuidance guidance{SteadyGuidanceOptions{}};
 
-  std::future<Adjusted> adjusting;         ///< first half of an attempt
+  std::future<Adjusted> adjusting;  ///< first half of an attempt, or for itself
+  bool promising{false};            ///< the second half is worth while
+  double next_adjustment_ms{kBetweenAdjustments_ms};
   std::future<SolvedCalibration> attempt;  ///< second half
   double attempt_begun_ms{0};
   double next_attempt_ms{0};
@@ -173,13 +177,17 @@ void SolverThread::tell_progress(Running& running) {
   progress_ = std::move(progress);
 }
 
-/// An attempt at the final answer where it may be good enough, else another provisional one.
+/// An attempt at the final answer where it may be good enough, or only its global adjustment when
+/// the last one is long ago, else another provisional answer.
 void SolverThread::begin_background_work(Running& running) {
   if (attempts_.busy()) return;
   const double now_ms = running.elapsed_ms();
-  if (now_ms > running.next_attempt_ms &&
-      is_promising(running.last_provisional, running.start.wanted)) {
+  const bool promising = now_ms > running.next_attempt_ms &&
+                         is_promising(running.last_provisional, running.start.wanted);
+  if (promising || now_ms > running.next_adjustment_ms) {
+    running.promising = promising;
     running.attempt_begun_ms = now_ms;
+    running.next_adjustment_ms = now_ms + kBetweenAdjustments_ms;
     running.adjusting = attempts_.run([calibration = std::move(running.calibration)]() mutable {
       CalibrationSnapshot snapshot = calibration->snapshot();
       return Adjusted{std::move(calibration), std::move(snapshot)};
@@ -197,9 +205,10 @@ bool SolverThread::end_background_work(Running& running) {
   if (is_ready(running.adjusting)) {
     Adjusted adjusted = running.adjusting.get();
     running.calibration = std::move(adjusted.calibration);
-    // The thread may not have noticed yet that it has nothing to do.
-    running.attempt = attempts_.run(
-        [snapshot = std::move(adjusted.snapshot)] { return handeye::solve(snapshot); });
+    if (running.promising && !running.finish_asked) {
+      running.attempt = attempts_.run(
+          [snapshot = std::move(adjusted.snapshot)] { return handeye::solve(snapshot); });
+    }
   }
   return is_ready(running.attempt) && end_attempt(running);
 }

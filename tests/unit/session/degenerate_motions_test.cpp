@@ -35,17 +35,18 @@ TEST_P(BadMotionTest, IsRefusedWithItsOwnReasonAndAdvice) {
 
 INSTANTIATE_TEST_SUITE_P(
     Motions, BadMotionTest,
-    testing::Values(BadMotion{"static", Reason::kNoMotion, {"keep_moving", ""}},
-                    BadMotion{"wobble", Reason::kNoMotion, {"keep_moving", ""}},
-                    BadMotion{"translation",
-                              Reason::kInsufficientRotation,
-                              {"tilt_up_and_down", "turn_left_and_right", "roll"}},
-                    BadMotion{
-                        "rotation", Reason::kNoParallax, {"slide_sideways", "slide_in_and_out"}},
-                    BadMotion{"single_axis",
-                              Reason::kSingleAxis,
-                              {"tilt_up_and_down", "turn_left_and_right", "roll"}},
-                    BadMotion{"pivot", Reason::kFixedPoint, {"slide_in_and_out"}}),
+    testing::Values(
+        // Everything is missing; tilting is what to begin with.
+        BadMotion{"static", Reason::kNoMotion, {"tilt_up_and_down", "keep_moving"}},
+        BadMotion{"wobble", Reason::kNoMotion, {"tilt_up_and_down", "keep_moving"}},
+        BadMotion{"translation",
+                  Reason::kInsufficientRotation,
+                  {"tilt_up_and_down", "turn_left_and_right", "roll"}},
+        BadMotion{"rotation", Reason::kNoParallax, {"slide_sideways", "slide_in_and_out"}},
+        BadMotion{"single_axis",
+                  Reason::kSingleAxis,
+                  {"tilt_up_and_down", "turn_left_and_right", "roll"}},
+        BadMotion{"pivot", Reason::kFixedPoint, {"slide_in_and_out"}}),
     [](const auto& motion) { return std::string(motion.param.scene); });
 
 TEST(GoodMotion, APivotThatSlidesIsAnswered) {

@@ -29,6 +29,7 @@ void BackgroundThread::work(const std::stop_token& stop, int niceness) {
   if (niceness > 0) setpriority(PRIO_PROCESS, 0, niceness);
   std::unique_lock lock(mutex_);
   while (posted_.wait(lock, stop, [this] { return static_cast<bool>(job_); })) {
+    if (stop.stop_requested()) return;
     auto job = std::exchange(job_, nullptr);
     lock.unlock();
     job();
@@ -36,7 +37,6 @@ void BackgroundThread::work(const std::stop_token& stop, int niceness) {
     lock.lock();
     // The next one may have been posted since the answer was there.
     busy_ = static_cast<bool>(job_);
-    if (stop.stop_requested()) return;
   }
 }
 

@@ -21,7 +21,7 @@ class BackgroundThread {
  public:
   /// `niceness`: 0 as everybody, up to 19 yields to them.
   explicit BackgroundThread(int niceness = 0);
-  /// Waits for the running job.
+  /// Waits for the running job; one that waits is not begun.
   ~BackgroundThread();
   BackgroundThread(const BackgroundThread&) = delete;
   BackgroundThread& operator=(const BackgroundThread&) = delete;

@@ -2,10 +2,8 @@
 #include "daemon/service/solver_thread.hpp"
 
 #include <algorithm>
-#include <memory>
 
-#include "daemon/session/steady_guidance.hpp"
-#include "daemon/session/stopwatch.hpp"
+#include "daemon/service/solver_thread_running.hpp"
 
 namespace handeye {
 namespace {
@@ -39,43 +37,7 @@ CalibrationResult cancelled(std::int64_t request_id) {
   return result;
 }
 
-using CalibrationPointer = std::unique_ptr<Calibration>;
-
-/// The global adjustment needs the calibration itself: it goes along and comes back.
-struct Adjusted {
-  CalibrationPointer calibration;
-  CalibrationSnapshot snapshot;
-};
-
 }  // namespace
-
-/// A calibration while it collects.
-struct SolverThread::Running {
-  StartOptions start;
-  std::uint64_t number;
-  std::uint64_t drops_before;
-  CalibrationPointer calibration;  ///< null: away for its global adjustment; frames wait
-  Stopwatch since_start;
-  double tracking_ms{0};
-  bool finish_asked{false};
-  bool cancel_asked{false};
-
-  std::future<Provisional> provisional;
-  double provisional_begun_ms{0};
-  double next_provisional_ms{kBetweenProvisionals_ms};
-  Provisional last_provisional;
-  SteadyGuidance guidance{SteadyGuidanceOptions{}};
-
-  std::future<Adjusted> adjusting;  ///< first half of an attempt, or for itself
-  bool promising{false};            ///< the second half is worth while
-  double next_adjustment_ms{kBetweenAdjustments_ms};
-  std::future<SolvedCalibration> attempt;  ///< second half
-  double attempt_begun_ms{0};
-  double next_attempt_ms{0};
-
-  double elapsed_ms() const { return since_start.elapsed_ms(); }
-  bool time_is_up() const { return elapsed_ms() > 1000 * start.max_duration_s; }
-};
 
 SolverThread::SolverThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
                            const Options& options)
@@ -119,6 +81,8 @@ void SolverThread::calibrate(const Command& begin, const std::stop_token& stop) 
                   .number = begin.calibration,
                   .drops_before = tracked_.dropped(),
                   .calibration = std::make_unique<Calibration>(options),
+                  .next_provisional_ms = kBetweenProvisionals_ms,
+                  .next_adjustment_ms = kBetweenAdjustments_ms,
                   .next_attempt_ms = 1000 * options_.min_duration_s};
   tell_progress(running);
   while (!stop.stop_requested()) {
@@ -190,7 +154,7 @@ void SolverThread::begin_background_work(Running& running) {
     running.next_adjustment_ms = now_ms + kBetweenAdjustments_ms;
     running.adjusting = attempts_.run([calibration = std::move(running.calibration)]() mutable {
       CalibrationSnapshot snapshot = calibration->snapshot();
-      return Adjusted{std::move(calibration), std::move(snapshot)};
+      return AdjustedCalibration{std::move(calibration), std::move(snapshot)};
     });
   } else if (now_ms > running.next_provisional_ms && !running.provisional.valid()) {
     running.provisional_begun_ms = now_ms;
@@ -203,7 +167,7 @@ void SolverThread::begin_background_work(Running& running) {
 bool SolverThread::end_background_work(Running& running) {
   if (is_ready(running.provisional)) end_provisional(running);
   if (is_ready(running.adjusting)) {
-    Adjusted adjusted = running.adjusting.get();
+    AdjustedCalibration adjusted = running.adjusting.get();
     running.calibration = std::move(adjusted.calibration);
     if (running.promising && !running.finish_asked) {
       running.attempt = attempts_.run(

@@ -162,7 +162,7 @@ WatchStatus CalibrationWatch::status(std::int64_t now_ns) const {
   if (broken_) {
     status.state = WatchState::kBroken;
     status.text = fmt::format("the camera head has {}: calibrate again", deviation);
-  } else if (contradictions_ > 0) {
+  } else if (contradictions_ >= options_.looks_to_doubt) {
     status.state = WatchState::kDoubtful;
     status.text = fmt::format("the camera head seems to have {}", deviation);
   } else if (ever && status.age_s <= options_.holds_for_s) {

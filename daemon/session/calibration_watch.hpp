@@ -50,7 +50,8 @@ struct WatchOptions {
   std::int64_t window_age_ns{60'000'000'000};  ///< older frames are forgotten
   int look_every{8};                           ///< frames kept from one look to the next
   double holds_for_s{30};                      ///< that an agreement is believed for
-  int looks_to_break{3};                       ///< contradictions in a row
+  int looks_to_doubt{2};                       ///< contradictions in a row
+  int looks_to_break{3};                       ///< likewise
   int looks_to_mend{3};  ///< agreements in a row after which a broken one holds again
   double time_offset_sigma_s{0.002};
   WatchEvidenceOptions evidence;

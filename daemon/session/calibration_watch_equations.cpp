@@ -115,18 +115,22 @@ std::optional<Eigen::Vector2d> watch_ray(const WatchTrack& track, const Pose& ro
   return seen.hnormalized();
 }
 
+Pose put_eye(const WatchFrame& frame, const WatchUnknowns& at) {
+  const double late_s = at.time_offset_correction_s;
+  Pose hand = Pose::Identity();
+  hand.linear() = exp_so3(-late_s * frame.angular_velocity) * frame.room_from_hand.linear();
+  hand.translation() = frame.room_from_hand.translation() - late_s * frame.velocity;
+  return hand * at.hand_from_eye;
+}
+
 WatchHandResidual watch_hand_residual(const WatchFrame& frame, const Pose& room_from_eye,
                                       const WatchUnknowns& at) {
-  const double late_s = at.time_offset_correction_s;
-  const Eigen::Matrix3d hand =
-      exp_so3(-late_s * frame.angular_velocity) * frame.room_from_hand.linear();
+  const Pose put = put_eye(frame, at);
+  const Eigen::Matrix3d hand = put.linear() * at.hand_from_eye.linear().transpose();
   const Eigen::Vector3d lever = hand * at.hand_from_eye.translation();
-  const Eigen::Vector3d centre =
-      frame.room_from_hand.translation() - late_s * frame.velocity + lever;
   WatchHandResidual found;
-  found.residual.head<3>() =
-      log_so3(room_from_eye.linear() * (hand * at.hand_from_eye.linear()).transpose());
-  found.residual.tail<3>() = room_from_eye.translation() - centre;
+  found.residual << log_so3(room_from_eye.linear() * put.linear().transpose()),
+      room_from_eye.translation() - put.translation();
   found.by_common.topLeftCorner<3, 3>() = hand;
   found.by_common.block<3, 3>(3, 3) = hand;
   found.by_common.col(6) << -frame.angular_velocity,
@@ -155,7 +159,7 @@ WatchEquations::WatchEquations(std::span<const WatchFrame> frames, const WatchUn
   matrix_.setZero(size, size);
   right_.setZero(size);
   for (const WatchTrack& track : at.tracks) add_track(track, at, weights);
-  for (std::size_t k = 0; k < frames.size(); ++k) add_hand(static_cast<int>(k), frames[k], at);
+  add_hands(frames, at);
   add_holds(at, weights);
   matrix_.diagonal() *= 1.0 + damping;
 }
@@ -187,18 +191,26 @@ void WatchEquations::add_track(const WatchTrack& track, const WatchUnknowns& at,
   }
 }
 
-void WatchEquations::add_hand(int frame, const WatchFrame& hand, const WatchUnknowns& at) {
-  const auto found =
-      watch_hand_residual(hand, at.room_from_eye[static_cast<std::size_t>(frame)], at);
-  const auto row = static_cast<Eigen::Index>(6 * frame);
-  const Eigen::Index common = matrix_.rows() - kWatchCommon;
-  const Eigen::Matrix<double, kWatchCommon, 6> back =
-      found.by_common.transpose() * found.information;
-  matrix_.block<6, 6>(row, row) += found.information;
-  matrix_.block<kWatchCommon, 6>(common, row) -= back;
-  matrix_.block<kWatchCommon, kWatchCommon>(common, common) += back * found.by_common;
-  right_.segment<6>(row) -= found.information * found.residual;
-  right_.tail<kWatchCommon>() += back * found.residual;
+/// The images' equations are in where the eyes are: here they become those in the hand's errors and
+/// the common unknowns, and the hand's own are added.
+void WatchEquations::add_hands(std::span<const WatchFrame> frames, const WatchUnknowns& at) {
+  const Eigen::Index eyes = matrix_.rows() - kWatchCommon;
+  Eigen::MatrixXd by_common(eyes, kWatchCommon);
+  std::vector<WatchHandResidual> hands;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    hands.push_back(watch_hand_residual(frames[k], at.room_from_eye[k], at));
+    by_common.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = hands.back().by_common;
+  }
+  const Eigen::MatrixXd across =
+      matrix_.topLeftCorner(eyes, eyes).selfadjointView<Eigen::Lower>() * by_common;
+  matrix_.bottomLeftCorner(kWatchCommon, eyes) = across.transpose();
+  matrix_.bottomRightCorner<kWatchCommon, kWatchCommon>() = by_common.transpose() * across;
+  right_.tail<kWatchCommon>() = by_common.transpose() * right_.head(eyes);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(6 * k);
+    matrix_.block<6, 6>(row, row) += hands[k].information;
+    right_.segment<6>(row) -= hands[k].information * hands[k].residual;
+  }
 }
 
 void WatchEquations::add_holds(const WatchUnknowns& at, const WatchWeights& weights) {
@@ -210,26 +222,37 @@ void WatchEquations::add_holds(const WatchUnknowns& at, const WatchWeights& weig
   right_.tail<kWatchCommon>() -= held_residual(at, weights).cwiseQuotient(sigma);
 }
 
-bool WatchEquations::step(WatchUnknowns& unknowns) const {
+std::optional<double> WatchEquations::step(std::span<const WatchFrame> frames,
+                                           WatchUnknowns& unknowns) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix_);
-  if (factor.info() != Eigen::Success) return false;
+  if (factor.info() != Eigen::Success) return std::nullopt;
   const Eigen::VectorXd step = factor.solve(right_);
-  if (!step.allFinite()) return false;
-  for (std::size_t k = 0; k < unknowns.room_from_eye.size(); ++k) {
-    const Vector6d moved = step.segment<6>(static_cast<Eigen::Index>(6 * k));
+  if (!step.allFinite()) return std::nullopt;
+  const Eigen::Matrix<double, kWatchCommon, 1> moved = step.tail<kWatchCommon>();
+  WatchUnknowns common{.hand_from_eye = unknowns.hand_from_eye,
+                       .time_offset_correction_s = unknowns.time_offset_correction_s + moved(6)};
+  common.hand_from_eye.linear() =
+      nearest_rotation(exp_so3(moved.head<3>()) * unknowns.hand_from_eye.linear());
+  common.hand_from_eye.translation() += moved.segment<3>(3);
+  carry_eyes(frames, common, step.head(step.size() - kWatchCommon), unknowns);
+  return 0.5 * step.dot(right_);
+}
+
+void carry_eyes(std::span<const WatchFrame> frames, const WatchUnknowns& common,
+                const Eigen::VectorXd& farther, WatchUnknowns& unknowns) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
     Pose& eye = unknowns.room_from_eye[k];
-    eye.linear() = nearest_rotation(exp_so3(moved.head<3>()) * eye.linear());
-    eye.translation() += moved.tail<3>();
+    const Vector6d off = watch_hand_residual(frames[k], eye, unknowns).residual +
+                         farther.segment<6>(static_cast<Eigen::Index>(6 * k));
+    eye = put_eye(frames[k], common);
+    eye.linear() = nearest_rotation(exp_so3(off.head<3>()) * eye.linear());
+    eye.translation() += off.tail<3>();
   }
+  unknowns.hand_from_eye = common.hand_from_eye;
+  unknowns.time_offset_correction_s = common.time_offset_correction_s;
   for (WatchTrack& track : unknowns.tracks) {
     track.room_from_anchor = unknowns.room_from_eye[static_cast<std::size_t>(track.anchor)];
   }
-  const Eigen::Matrix<double, kWatchCommon, 1> common = step.tail<kWatchCommon>();
-  Pose& hand_from_eye = unknowns.hand_from_eye;
-  hand_from_eye.linear() = nearest_rotation(exp_so3(common.head<3>()) * hand_from_eye.linear());
-  hand_from_eye.translation() += common.segment<3>(3);
-  unknowns.time_offset_correction_s += common(6);
-  return true;
 }
 
 void settle_points(const WatchWeights& weights, WatchUnknowns& unknowns) {

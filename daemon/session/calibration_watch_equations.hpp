@@ -42,25 +42,27 @@ struct WatchWeights {
 inline constexpr int kWatchCommon = 7;
 
 /// Gauss-Newton's normal equations with the points eliminated. Of frame k the six unknowns from 6 k
-/// are (w [rad], dc [mm]) of room_from_eye, R = Exp(w) R, centre + dc, in the room; the common ones
-/// are last.
+/// are how much farther its eye goes from where hand and common unknowns put it
+/// (WatchHandResidual), the common ones are last: together with hand_from_eye all eyes go, along
+/// their true arcs, so that neither damping nor a lever of some hundred mm makes the steps short.
 class WatchEquations {
  public:
   WatchEquations(std::span<const WatchFrame> frames, const WatchUnknowns& at,
                  const WatchWeights& weights, double damping);
 
   /// Moves the eyes and what they share by the step; the points go with the eye that they are
-  /// anchored in. False where the equations are not positive definite.
-  bool step(WatchUnknowns& unknowns) const;
+  /// anchored in. Returns by how much the cost should fall; nothing where the equations are not
+  /// positive definite.
+  std::optional<double> step(std::span<const WatchFrame> frames, WatchUnknowns& unknowns) const;
 
-  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }  ///< lower half
 
  private:
   void add_track(const WatchTrack& track, const WatchUnknowns& at, const WatchWeights& weights);
-  void add_hand(int frame, const WatchFrame& hand, const WatchUnknowns& at);
+  void add_hands(std::span<const WatchFrame> frames, const WatchUnknowns& at);
   void add_holds(const WatchUnknowns& at, const WatchWeights& weights);
 
-  Eigen::MatrixXd matrix_;  ///< lower half
+  Eigen::MatrixXd matrix_;
   Eigen::VectorXd right_;
 };
 
@@ -79,6 +81,14 @@ struct WatchHandResidual {
 };
 WatchHandResidual watch_hand_residual(const WatchFrame& frame, const Pose& room_from_eye,
                                       const WatchUnknowns& at);
+
+/// Where hand and common unknowns put the eye of a frame.
+Pose put_eye(const WatchFrame& frame, const WatchUnknowns& at);
+
+/// Goes over to the common unknowns of `common`: the eyes stay as far from where they are put as
+/// they were, and go `farther` by six of each; the points go with them.
+void carry_eyes(std::span<const WatchFrame> frames, const WatchUnknowns& common,
+                const Eigen::VectorXd& farther, WatchUnknowns& unknowns);
 
 /// A point's ray in an eye. Nothing: not before it.
 std::optional<Eigen::Vector2d> watch_ray(const WatchTrack& track, const Pose& room_from_eye);

@@ -14,10 +14,16 @@ namespace {
 /// far off, then as outliers deserve.
 constexpr double kWideBend = 40.0;
 constexpr double kBend = 4.0;
-/// Features are off for as long as they live: measured, the rotation's variance is 1.6 times what
-/// independent errors make it.
-constexpr double kCorrelation = 2.0;
-constexpr double kConverged = 0.02;  ///< fall of the cost, of which 0.5 is one standard deviation
+/// Features are off for as long as they live: measured, the rotation's variance is 1.2 times what
+/// independent errors make it, where features walk off a lot more.
+constexpr double kCorrelation = 1.5;
+/// Expected fall of the cost by another step, of which 0.5 is one standard deviation.
+constexpr double kConverged = 0.05;
+/// Of a feature that goes its own way, in what features are off usually.
+constexpr double kWild = 3.0;
+/// What a fit without the calibration gains by chance; more is to be looked at closely.
+constexpr double kUsualGain = 20.0;
+constexpr int kClosely = 3;  ///< times the iterations
 /// What the motion does not tell stays about where it started.
 constexpr double kFree_rad = 0.3;
 constexpr double kFree_mm = 30.0;
@@ -40,32 +46,61 @@ WatchUnknowns begin_at(std::span<const WatchFrame> frames, const Pose& hand_from
   return at;
 }
 
-/// Levenberg-Marquardt; returns the iterations.
-int minimise(std::span<const WatchFrame> frames, const WatchWeights& weights, int most,
-             WatchUnknowns& at) {
+struct Descent {
+  int iterations{0};
+  bool converged{false};
+};
+
+/// Levenberg-Marquardt.
+Descent minimise(std::span<const WatchFrame> frames, const WatchWeights& weights, int most,
+                 WatchUnknowns& at) {
   settle_points(weights, at);
   double cost = watch_cost(frames, at, weights);
-  double damping = 1e-4;
-  int iterations = 0;
-  while (iterations < most) {
-    ++iterations;
+  double damping = 1e-5;
+  Descent descent;
+  while (descent.iterations < most && damping < 1e3) {
+    ++descent.iterations;
     WatchUnknowns next = at;
-    const bool stepped = WatchEquations(frames, at, weights, damping).step(next);
-    if (stepped) settle_points(weights, next);
+    const auto expected = WatchEquations(frames, at, weights, damping).step(frames, next);
+    descent.converged = expected && *expected < kConverged && damping < 1e-2;
+    if (expected) settle_points(weights, next);
     const double next_cost =
-        stepped ? watch_cost(frames, next, weights) : std::numeric_limits<double>::infinity();
-    if (!(next_cost < cost)) {
-      if (damping > 1e3) break;
+        expected ? watch_cost(frames, next, weights) : std::numeric_limits<double>::infinity();
+    if (next_cost < cost) {
+      at = std::move(next);
+      cost = next_cost;
+      damping = std::max(1e-9, 0.1 * damping);
+    } else {
       damping = std::max(damping, 1e-5) * 10.0;
-      continue;
     }
-    const bool converged = cost - next_cost < kConverged;
-    at = std::move(next);
-    cost = next_cost;
-    damping *= 0.1;
-    if (converged) break;
+    if (descent.converged) break;
   }
-  return iterations;
+  return descent;
+}
+
+double mean_error(const WatchTrack& track, const std::vector<Pose>& room_from_eye) {
+  double squared = 0;
+  for (const WatchTrack::Sight& sight : track.sights) {
+    const auto seen = watch_ray(track, room_from_eye[static_cast<std::size_t>(sight.frame)]);
+    squared += seen ? (*seen - sight.ray).squaredNorm() : 1.0;
+  }
+  return std::sqrt(squared / static_cast<double>(track.sights.size()));
+}
+
+/// Leaves out features that slide, or are no point: sight by sight a robust loss would go on
+/// choosing which of theirs to believe, and the descent never ends.
+void leave_out_wild_tracks(double image_noise, WatchUnknowns& at) {
+  std::vector<double> errors;
+  for (const WatchTrack& track : at.tracks) errors.push_back(mean_error(track, at.room_from_eye));
+  std::vector<double> sorted = errors;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  const double most = kWild * std::max(*middle, image_noise);
+  std::vector<WatchTrack> steady;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (errors[i] <= most) steady.push_back(std::move(at.tracks[i]));
+  }
+  at.tracks = std::move(steady);
 }
 
 struct ImageResiduals {
@@ -92,6 +127,20 @@ ImageResiduals image_residuals(const WatchUnknowns& at, const WatchWeights& weig
   return found;
 }
 
+/// The cost with hand_from_eye held, found from what explains the frames best without: where the
+/// calibration can explain the same points and eyes, it is not to blame.
+Descent hold_again(std::span<const WatchFrame> frames, const WatchWeights& held, int most,
+                   const WatchUnknowns& free, WatchFit& fit) {
+  WatchUnknowns at = free;
+  WatchUnknowns common{.hand_from_eye = at.start,
+                       .time_offset_correction_s = at.time_offset_correction_s};
+  const auto size = static_cast<Eigen::Index>(6 * frames.size());
+  carry_eyes(frames, common, Eigen::VectorXd::Zero(size), at);
+  const Descent descent = minimise(frames, held, most, at);
+  fit.held_cost = watch_cost(frames, at, held);
+  return descent;
+}
+
 /// What the equations at the answer say about it.
 bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
               const WatchWeights& weights, WatchFit& fit) {
@@ -106,14 +155,8 @@ bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto hand = watch_hand_residual(frames[k], at.room_from_eye[k], at);
     const auto row = static_cast<Eigen::Index>(6 * k);
-    const auto across =
-        (covariance.block<6, kWatchCommon>(row, common) * hand.by_common.transpose()).eval();
-    const Matrix6d adjusted = covariance.block<6, 6>(row, row) - across - across.transpose() +
-                              hand.by_common *
-                                  covariance.bottomRightCorner<kWatchCommon, kWatchCommon>() *
-                                  hand.by_common.transpose();
     chi2 += hand.residual.dot(hand.information * hand.residual);
-    freedom += 6.0 - (hand.information * adjusted).trace();
+    freedom += 6.0 - (hand.information * covariance.block<6, 6>(row, row)).trace();
   }
   const ImageResiduals image = image_residuals(at, weights);
   const double all = 2.0 * static_cast<double>(image.inliers) -
@@ -121,8 +164,10 @@ bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
   fit.hand_excess = chi2 / std::max(1.0, freedom);
   fit.image_excess = image.squared / (weights.image * weights.image) / std::max(1.0, all - freedom);
   fit.outliers = 1.0 - static_cast<double>(image.inliers) / static_cast<double>(image.sights);
-  fit.covariance =
-      std::max({1.0, fit.hand_excess, fit.image_excess}) * covariance.block<6, 6>(common, common);
+  fit.covariance = kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess}) *
+                   covariance.block<6, 6>(common, common);
+  fit.gain = 2.0 * (fit.held_cost - fit.cost) /
+             (kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess}));
   fit.hand_from_eye = at.hand_from_eye;
   return fit.covariance.allFinite() && std::isfinite(fit.cost);
 }
@@ -134,21 +179,34 @@ std::optional<WatchFit> watch_fit(std::span<const WatchFrame> frames, const Pose
   std::vector<WatchTrack> tracks = watch_tracks(frames, options.min_sights);
   if (static_cast<int>(tracks.size()) < options.min_tracks) return std::nullopt;
   WatchUnknowns at = begin_at(frames, start, std::move(tracks));
-  WatchWeights weights{.image = options.image_noise,
-                       .robust_image = kWideBend * options.image_noise,
-                       .time_offset_s = options.time_offset_s,
-                       .hold_rotation_rad = options.held_rotation_rad,
-                       .hold_translation_mm = options.held_translation_mm};
+  const WatchWeights weights{.image = options.image_noise,
+                             .robust_image = kWideBend * options.image_noise,
+                             .time_offset_s = options.time_offset_s,
+                             .hold_rotation_rad = options.held_rotation_rad,
+                             .hold_translation_mm = options.held_translation_mm};
+  WatchWeights held = weights;
   WatchFit fit;
-  fit.iterations = minimise(frames, weights, options.max_iterations / 2, at);
-  weights.robust_image = kBend * options.image_noise;
-  fit.iterations += minimise(frames, weights, options.max_iterations, at);
-  fit.held_cost = watch_cost(frames, at, weights);
-  weights.hold_rotation_rad = kFree_rad;
-  weights.hold_translation_mm = kFree_mm;
-  fit.iterations += minimise(frames, weights, 2 * options.max_iterations, at);
-  fit.cost = watch_cost(frames, at, weights);
-  if (!conclude(frames, at, weights, fit)) return std::nullopt;
+  fit.iterations = minimise(frames, held, options.max_iterations / 2, at).iterations;
+  leave_out_wild_tracks(options.image_noise, at);
+  held.robust_image = kBend * options.image_noise;
+  fit.iterations += minimise(frames, held, options.max_iterations, at).iterations;
+  fit.held_cost = watch_cost(frames, at, held);
+  WatchWeights free = held;
+  free.hold_rotation_rad = kFree_rad;
+  free.hold_translation_mm = kFree_mm;
+  Descent descent = minimise(frames, free, 2 * options.max_iterations, at);
+  fit.iterations += descent.iterations;
+  if (2.0 * (fit.held_cost - watch_cost(frames, at, free)) > kUsualGain) {
+    leave_out_wild_tracks(options.image_noise, at);
+    descent = minimise(frames, free, kClosely * options.max_iterations, at);
+    fit.iterations += descent.iterations;
+    const Descent reconciled = hold_again(frames, held, kClosely * options.max_iterations, at, fit);
+    fit.iterations += reconciled.iterations;
+    descent.converged &= reconciled.converged;
+  }
+  fit.cost = watch_cost(frames, at, free);
+  fit.converged = descent.converged;
+  if (!conclude(frames, at, free, fit)) return std::nullopt;
   return fit;
 }
 

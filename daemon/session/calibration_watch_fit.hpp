@@ -23,13 +23,18 @@ struct WatchFitOptions {
 struct WatchFit {
   Pose hand_from_eye{Pose::Identity()};
   /// Of (w [rad], dt [mm]) in R = Exp(w) R_fit, t = t_fit + dt, all else free; huge where the
-  /// motion does not tell. Widened where hand or images are noisier than assumed.
+  /// motion does not tell. Widened where hand or images are noisier than assumed, and for errors of
+  /// a feature that last.
   Matrix6d covariance{Matrix6d::Zero()};
   double hand_excess{0};   ///< variance of the hand's residuals over what was assumed
   double image_excess{0};  ///< likewise of the images', outliers aside
   double outliers{0};      ///< share of the sights beyond the bend of the loss
   double cost{0};
   double held_cost{0};  ///< the same with hand_from_eye held near the start; 0.5 is a sigma squared
+  /// Of the likelihood by letting go of the start, in chi2 of six degrees of freedom, widened
+  /// alike.
+  double gain{0};
+  bool converged{false};  ///< also with hand_from_eye held, where anything hangs on it
   int iterations{0};
 };
 

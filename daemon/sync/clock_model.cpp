@@ -120,7 +120,8 @@ ClockModel::Belief ClockModel::judge(const Point& point, bool witnessed) {
   // Nothing arrives before it was sent: that the mapping was late needs no confirmation.
   if (witnessed && residual_s < 0) return Belief::kJumped;
   const bool is_steady = runs_on(point);
-  const int needed = witnessed ? options_.delay_confirmations : options_.jump_confirmations;
+  const bool may_be_delay = witnessed || (options_.lenient && residual_s > 0);
+  const int needed = may_be_delay ? options_.delay_confirmations : options_.jump_confirmations;
   if (suspects_ >= needed) return Belief::kJumped;
   return witnessed && (!is_steady || suspects_ < kSteady) ? Belief::kLate : Belief::kDoubted;
 }

@@ -23,7 +23,8 @@ struct ClockModelOptions {
   /// stamp within 0.5 ms (ART's own figure).
   double step_s{0.003};
   /// A camera's data are delayed more, and less evenly, than its clock is stepped: what either its
-  /// counter or the arrival vouches for is no jump, however long it lasts.
+  /// counter or the arrival vouches for is no jump, however long it lasts. Without a counter that
+  /// counts, data that are late may be a jump, and take as long to be taken for one as a delay.
   bool lenient{false};
   /// A mapping holds once so many data have come within so much of the earliest, ...
   int settling_data{3};

@@ -27,7 +27,8 @@ struct FrameTime {
 ///
 /// Where the first stamps are of no such clock, as those of a camera on another host are, all are
 /// mapped by the clock model: the shortest way then counts as no time, and is found with the time
-/// offset. Where stamps are nothing but arrivals they pass, and the clock is absent.
+/// offset. A log that is played again begins anew, with its count. Where stamps are nothing but
+/// arrivals they pass, and the clock is absent.
 ///
 /// Causal, constant time, no allocation per frame.
 class FrameClock {
@@ -49,6 +50,8 @@ class FrameClock {
  private:
   enum class Base { kUnknown, kHost, kCorrected, kForeign };
 
+  bool is_played_again(std::int64_t stamp_ns, std::uint32_t sequence) const;
+  void begin_anew();
   FrameTime time_of(std::int64_t stamp_ns, std::int64_t arrival_ns, std::uint32_t sequence);
   FrameTime pass(std::int64_t stamp_ns, std::int64_t arrival_ns, const ClockReading& reading);
 
@@ -60,7 +63,10 @@ class FrameClock {
   std::int64_t constant_ways_{0};  ///< frames whose arrival - stamp was that of the one before
   std::int64_t last_way_ns_{0};
   std::int64_t frames_{0};
+  std::int64_t last_stamp_ns_{0};
+  std::uint32_t last_sequence_{0};
   std::int64_t backwards_{0};
+  int backwards_in_a_row_{0};
   std::int64_t jumps_before_{0};
 };
 

@@ -87,7 +87,10 @@ void LcmCamera::follow(const image_t& image) {
                                       static_cast<std::uint32_t>(image.frame_number));
     constexpr double kWeight = 0.05;  // the rate of about the last 20 images
     const double period_s = static_cast<double>(image.timestamp_ns - stream_.timestamp_ns) * 1e-9;
-    stream_.period_s += (stream_.period_s == 0 ? 1 : kWeight) * (period_s - stream_.period_s);
+    // Stamps go back where a log is played again.
+    if (period_s > 0) {
+      stream_.period_s += (stream_.period_s == 0 ? 1 : kWeight) * (period_s - stream_.period_s);
+    }
   }
   stream_.session_id = image.session_id;
   stream_.frame_number = image.frame_number;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -99,6 +100,75 @@ TEST(FrameClock, PutsASteppedClockRight) {
   }
 }
 
+TEST(FrameClock, TakesNoShortDelayForAStepWhereTheCameraDoesNotCount) {
+  FrameClock clock;
+  SimulatedCamera camera(6);
+  camera.counts = false;
+  for (int i = 0; i < 400; ++i) {
+    const bool is_late = i >= 200 && i < 210;
+    camera.longer_ns = is_late ? 200'000'000 : 0;
+    const FrameTime time = camera.next(clock);
+    if (is_late) continue;
+    ASSERT_FALSE(time.doubtful) << i;
+    ASSERT_EQ(time.timestamp_ns, camera.stamp_ns) << i;
+  }
+  EXPECT_EQ(clock.report().jumps, 0);
+}
+
+TEST(FrameClock, PutsASteppedClockRightWhereTheCameraDoesNotCount) {
+  for (const std::int64_t step_ms : {-5000, -200, 200, 5000}) {
+    FrameClock clock;
+    SimulatedCamera camera(7);
+    camera.counts = false;
+    int doubtful = 0;
+    for (int i = 0; i < 600; ++i) {
+      if (i == 300) camera.base_ns = step_ms * 1'000'000;
+      const FrameTime time = camera.next(clock);
+      doubtful += time.doubtful ? 1 : 0;
+      if (time.doubtful || i < 300) continue;
+      ASSERT_NEAR(static_cast<double>(time.timestamp_ns - camera.taken_ns), 0, 4e6)
+          << step_ms << " ms, frame " << i;
+    }
+    EXPECT_EQ(clock.report().jumps, 1) << step_ms;
+    EXPECT_LE(doubtful, step_ms < 0 ? 80 : 25) << step_ms;
+  }
+}
+
+// Age of the log when it is played; 3 s: its stamps may be the host's own, the first time.
+TEST(FrameClock, FollowsALogThatIsPlayedAgainAndAgain) {
+  for (const bool counts : {true, false}) {
+    for (const std::int64_t age_s : {3, 1000}) {
+      FrameClock clock;
+      std::mt19937 random(8);
+      std::exponential_distribution<double> jitter_s(1 / 0.001);
+      std::int64_t now_ns = kBoot_ns;
+      std::int64_t last_ns = 0;
+      for (int pass = 0; pass < 4; ++pass) {
+        int doubtful = 0;
+        std::optional<double> way_ns;
+        for (std::uint32_t i = 0; i < 250; ++i) {
+          now_ns += kPeriod_ns;
+          const std::int64_t stamp_ns = kBoot_ns - age_s * 1'000'000'000 + i * kPeriod_ns;
+          const std::int64_t arrival_ns = now_ns + kWay_ns + std::llround(1e9 * jitter_s(random));
+          const FrameTime time = clock.observe(stamp_ns, arrival_ns, counts ? 77 + i : 77);
+          if (time.doubtful) {
+            ++doubtful;
+            continue;
+          }
+          EXPECT_GT(time.timestamp_ns, last_ns);
+          last_ns = time.timestamp_ns;
+          const auto this_way_ns = static_cast<double>(now_ns - time.timestamp_ns);
+          if (!way_ns) way_ns = this_way_ns;
+          ASSERT_NEAR(this_way_ns, *way_ns, 15e6)
+              << age_s << " s old, pass " << pass << ", frame " << i;
+        }
+        EXPECT_LE(doubtful, counts ? 10 : 75) << age_s << " s old, pass " << pass;
+      }
+      EXPECT_EQ(clock.report().jumps, 3) << age_s << " s old";
+    }
+  }
+}
+
 TEST(FrameClock, MapsTheClockOfAnotherHost) {
   for (const double drift : {-60e-6, 60e-6}) {
     FrameClock clock;
@@ -137,6 +207,19 @@ TEST(FrameClock, HandsNoFrameOnThatGoesBack) {
     EXPECT_EQ(time.doubtful, i == 50) << i;
   }
   EXPECT_EQ(clock.report().jumps, 0);
+}
+
+TEST(FrameClock, StampsThatKeepGoingBackAreThoseOfAnotherClock) {
+  FrameClock clock;
+  int handed_on = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    // The first one is a second ahead, within what a stamp of the host's may be.
+    const std::int64_t wrong_ns = i == 0 ? 900'000'000 : 0;
+    const std::int64_t taken_ns = kBoot_ns + i * kPeriod_ns;
+    const FrameTime time = clock.observe(taken_ns + wrong_ns, taken_ns + kWay_ns, i);
+    if (i >= 50 && !time.doubtful) ++handed_on;
+  }
+  EXPECT_GE(handed_on, 145);
 }
 
 TEST(FrameClock, ACameraThatIsOpenedAnewBeginsAnew) {

@@ -78,52 +78,75 @@ bool contradicts_itself(const MaximumLikelihoodResult& result) {
   return static_cast<double>(left_out) > kMaxContradicting * static_cast<double>(used + left_out);
 }
 
-/// Of the part whose scale is known best: through hand_from_eye it serves the others. What another
-/// answer knows better of the translation it knows of the scale, on which the translation hangs.
-double log_scale_sigma(const MaximumLikelihoodResult& result, const Matrix6d& covariance) {
+/// An answer, and the halves that speak of it.
+struct Weighed {
+  const JudgedAnswer& answer;
+  std::optional<HalvesComparison> halves;
+  bool own_halves{true};  ///< false: another answer's, to the same data
+
+  bool agrees(const JudgeOptions& options) const {
+    return own_halves && halves && halves->chi2 <= options.halves_chi2_by_chance;
+  }
+};
+
+/// Of the likelihood, in the part whose scale it knows best: through hand_from_eye it serves the
+/// others.
+double log_scale_sigma(const MaximumLikelihoodResult& result) {
   double least = result.log_scale_sigma;
   for (const PartResult& part : result.parts) {
     if (part.poses_used > 0) least = std::min(least, part.log_scale_sigma);
   }
+  return least;
+}
+
+/// What another answer knows better of the scale is believed only where its halves agree. It may
+/// say so itself; else it is what it knows better of the translation, which hangs on the scale.
+double log_scale_sigma(const MaximumLikelihoodResult& result, const Matrix6d& covariance,
+                       const Weighed& weighed, const JudgeOptions& options) {
+  const double of_likelihood = log_scale_sigma(result);
+  if (!weighed.agrees(options)) {
+    return std::max(of_likelihood, weighed.answer.log_scale_sigma.value_or(0.0));
+  }
+  if (weighed.answer.log_scale_sigma) return *weighed.answer.log_scale_sigma;
   const double known = sigma_translation_mm(covariance) / result.sigma_translation_mm();
-  return known < 1.0 ? least * known : least;
+  return of_likelihood * std::min(known, 1.0);
 }
 
 /// Whether the unknown scale is what makes the translation uncertain: its share of the variance is
 /// the likelihood's, the variance the answer's.
-bool scale_is_to_blame(const MaximumLikelihoodResult& result, const Matrix6d& covariance,
+bool scale_is_to_blame(const MaximumLikelihoodResult& result, const Weighed& weighed,
                        const JudgeOptions& options) {
+  const Matrix6d& covariance = weighed.answer.covariance;
   const double sigma = result.sigma_translation_mm();
   const double known = result.sigma_translation_known_scale_mm;
-  return log_scale_sigma(result, covariance) > options.max_log_scale_sigma ||
+  return log_scale_sigma(result, covariance, weighed, options) > options.max_log_scale_sigma ||
          (options.solver.estimate_scale &&
           sigma_translation_mm(covariance) > options.wanted_translation_mm &&
           known * known < (1.0 - kScaleShare) * sigma * sigma);
 }
 
 /// What the answer is worth.
-void weigh(std::span<const HandEyeObservation> observations, const MaximumLikelihoodResult& result,
-           const JudgedAnswer& answer, const JudgeOptions& options, Judgement& judgement) {
-  judgement.covariance = answer.covariance;
-  if (result.poses_used >= 2 * kMinHalf) {
-    const auto halves =
-        answer.halves ? answer.halves : compare_halves(observations, result, options.solver);
-    if (halves) {
-      judgement.halves_chi2 = halves->chi2;
-      if (halves->chi2 > options.halves_chi2_by_chance) {
-        const Vector6d error = error_of_whole(*halves, answer.covariance);
-        judgement.covariance += error * error.transpose();
-      }
+Judgement worth(const Weighed& weighed, const JudgeOptions& options) {
+  Judgement judgement;
+  judgement.covariance = weighed.answer.covariance;
+  if (weighed.halves) {
+    judgement.halves_chi2 = weighed.halves->chi2;
+    if (weighed.halves->chi2 > options.halves_chi2_by_chance) {
+      const Vector6d error = weighed.own_halves
+                                 ? error_of_whole(*weighed.halves, weighed.answer.covariance)
+                                 : Vector6d(0.5 * weighed.halves->difference);
+      judgement.covariance += error * error.transpose();
     }
   }
   judgement.observability = observability(judgement.covariance);
+  return judgement;
 }
 
 bool suffices(const Matrix6d& covariance, const MaximumLikelihoodResult& result,
-              const JudgeOptions& options) {
+              const Weighed& weighed, const JudgeOptions& options) {
   return covariance.allFinite() && sigma_rotation_deg(covariance) <= options.wanted_rotation_deg &&
          sigma_translation_mm(covariance) <= options.wanted_translation_mm &&
-         log_scale_sigma(result, covariance) <= options.max_log_scale_sigma &&
+         log_scale_sigma(result, covariance, weighed, options) <= options.max_log_scale_sigma &&
          !contradicts_itself(result);
 }
 
@@ -144,10 +167,10 @@ bool turns_about_camera(std::span<const HandEyeObservation> observations, const 
   });
 }
 
-/// What is wrong with a motion that did not suffice. `result`: nothing where there is no answer.
+/// What is wrong with a motion that did not suffice. `scale_to_blame`: nothing where there is no
+/// answer to tell.
 MotionProblem problem_of(std::span<const HandEyeObservation> observations,
-                         const MaximumLikelihoodResult* result, const Matrix6d& covariance,
-                         const JudgeOptions& options) {
+                         std::optional<bool> scale_to_blame, const JudgeOptions& options) {
   std::vector<HandEyeObservation> usable;
   std::vector<Pose> hand;
   for (const HandEyeObservation& observation : observations) {
@@ -162,8 +185,7 @@ MotionProblem problem_of(std::span<const HandEyeObservation> observations,
   const MotionProblem problem = classify(motion_facts(hand), noise, on_the_spot, scale);
   if (problem != MotionProblem::kFixedPoint && problem != MotionProblem::kNone) return problem;
   // The sigma of the scale decides whether a pivot is to blame, not how the motion looks.
-  const bool pivot = result ? scale_is_to_blame(*result, covariance, options)
-                            : problem == MotionProblem::kFixedPoint;
+  const bool pivot = scale_to_blame.value_or(problem == MotionProblem::kFixedPoint);
   return pivot ? MotionProblem::kFixedPoint : MotionProblem::kUncertain;
 }
 
@@ -184,35 +206,53 @@ MissingMotion missing_motion(std::span<const HandEyeObservation> observations,
   return missing_turn(observations, answer.hand_from_eye, weak.axis_in_hand);
 }
 
+Judgement judge(std::span<const HandEyeObservation> observations,
+                const MaximumLikelihoodResult& result, const Weighed& weighed,
+                const JudgeOptions& options) {
+  Judgement judgement = worth(weighed, options);
+  const bool enough = result.poses_used >= kMinPoses;
+  const bool two_halves = weighed.halves || result.poses_used < 2 * kMinHalf;
+  if (enough && two_halves && suffices(judgement.covariance, result, weighed, options)) {
+    judgement.problem = MotionProblem::kNone;
+    return judgement;
+  }
+  // Precise by itself: the motion was enough, and the halves disagree.
+  const JudgedAnswer& answer = weighed.answer;
+  const bool uncertain = enough && suffices(answer.covariance, result, weighed, options);
+  judgement.problem =
+      uncertain ? MotionProblem::kUncertain
+                : problem_of(observations, scale_is_to_blame(result, weighed, options), options);
+  judgement.missing = missing_motion(observations, answer, judgement.problem, options);
+  return judgement;
+}
+
+/// Nothing when a half is too short.
+std::optional<HalvesComparison> halves_of(std::span<const HandEyeObservation> observations,
+                                          const MaximumLikelihoodResult& result,
+                                          const JudgeOptions& options) {
+  if (result.poses_used < 2 * kMinHalf) return std::nullopt;
+  return compare_halves(observations, result, options.solver);
+}
+
 }  // namespace
 
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options) {
-  Judgement judgement;
-  weigh(observations, result, answer, options, judgement);
-  const bool enough = result.poses_used >= kMinPoses;
-  const bool two_halves = judgement.halves_chi2.has_value() || result.poses_used < 2 * kMinHalf;
-  if (enough && two_halves && suffices(judgement.covariance, result, options)) {
-    judgement.problem = MotionProblem::kNone;
-    return judgement;
-  }
-  // Precise by itself: the motion was enough, and the halves disagree.
-  const bool uncertain = enough && suffices(answer.covariance, result, options);
-  judgement.problem = uncertain ? MotionProblem::kUncertain
-                                : problem_of(observations, &result, answer.covariance, options);
-  judgement.missing = missing_motion(observations, answer, judgement.problem, options);
-  return judgement;
+  if (answer.halves) return judge(observations, result, Weighed{answer, answer.halves}, options);
+  return judge(observations, result,
+               Weighed{answer, halves_of(observations, result, options), false}, options);
 }
 
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   if (result) {
-    const JudgedAnswer answer{result->solution.hand_from_eye, result->covariance, std::nullopt};
-    return judge(observations, *result, answer, options);
+    const JudgedAnswer answer{result->solution.hand_from_eye, result->covariance, {}, {}};
+    return judge(observations, *result, Weighed{answer, halves_of(observations, *result, options)},
+                 options);
   }
   Judgement judgement;
-  judgement.problem = problem_of(observations, nullptr, Matrix6d::Zero(), options);
+  judgement.problem = problem_of(observations, std::nullopt, options);
   judgement.missing = remedy(judgement.problem);
   return judgement;
 }

@@ -33,8 +33,12 @@ struct JudgeOptions {
 /// What is judged where the likelihood's answer was only the start of a better one (one_step.hpp).
 struct JudgedAnswer {
   Pose hand_from_eye{Pose::Identity()};
-  Matrix6d covariance{Matrix6d::Zero()};   ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
-  std::optional<HalvesComparison> halves;  ///< its own; nothing: the likelihood's serve
+  Matrix6d covariance{Matrix6d::Zero()};  ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
+  /// Its own; nothing: the likelihood's serve, and half their difference counts in full, for what
+  /// this answer claims says nothing of them.
+  std::optional<HalvesComparison> halves;
+  /// Its own; believed where its own halves agree. Nothing: from the likelihood's.
+  std::optional<double> log_scale_sigma;
 };
 
 struct Judgement {
@@ -44,7 +48,8 @@ struct Judgement {
   /// too short.
   std::optional<double> halves_chi2;
   /// Of the answer's hand_from_eye, with what the halves add where chance does not explain their
-  /// difference (error_of_whole). This, not the answer's own, is what is accepted or refused.
+  /// difference (error_of_whole; of halves that are not its own all of d/2). This, not the answer's
+  /// own, is what is accepted or refused.
   Matrix6d covariance{Matrix6d::Zero()};
   Observability observability;  ///< from that covariance
   MissingMotion missing{

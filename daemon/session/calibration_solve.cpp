@@ -8,6 +8,7 @@
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/lens_sensitivity.hpp"
 #include "daemon/session/method_comparison.hpp"
+#include "daemon/session/offset_check.hpp"
 #include "daemon/session/one_step_estimate.hpp"
 #include "daemon/session/stopwatch.hpp"
 #include "daemon/session/verdict.hpp"
@@ -16,25 +17,26 @@ namespace handeye {
 namespace {
 
 constexpr std::string_view kOneStep = "one_step";
+constexpr std::string_view kWorseTrackerAdvice =
+    "The tracker would have to be more than five times as noisy as it is said to be: check that "
+    "camera and body sit firmly, the lens, and the tracker's noise in the configuration.";
 constexpr std::string_view kStoodStillAdvice =
     "The scope stood still in every image, so the time offset between camera and tracker could not "
     "be found and was not needed: it was taken to be 0.";
-
-MethodSigma sigma_of(const Matrix6d& covariance) {
-  return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
-}
 
 /// What one step does not wait for.
 struct Besides {
   std::vector<MethodResult> methods;  ///< of the table; the last is the likelihood's
   std::optional<Matrix6d> lens_covariance;
+  bool offset_jumped{false};
 };
 
-/// The methods of the table on the likelihood's poses, and what an uncertain lens adds to its
-/// answer.
+/// The methods of the table on the likelihood's poses, what an uncertain lens adds to its answer,
+/// and whether one time offset serves all of it.
 Besides look_besides(const CalibrationSnapshot& snapshot, const Estimate& found) {
   Besides besides;
   besides.lens_covariance = lens_covariance(snapshot.reconstruction, found, snapshot.hand);
+  besides.offset_jumped = offset_jumped(snapshot.reconstruction.frames, snapshot.hand);
   const std::vector<PosePair> pairs = poses_of_answer(found);
   const std::span<const Method> all = methods(found.scale);
   ComparisonOptions comparison{.scale = found.scale, .noise = found.options.noise};
@@ -118,6 +120,9 @@ std::string advice_for(const Finding& finding, const std::optional<Board>& board
   if (leaves_the_motion_open(finding.reason) && finding.missing != MissingMotion::kNone) {
     advice += fmt::format(" What would help most: {}.", words(finding.missing));
   }
+  if (finding.reason == Reason::kUncertain && finding.worse_tracker) {
+    advice += fmt::format(" {}", kWorseTrackerAdvice);
+  }
   if (found.stood_still && found.likelihood) {
     if (!advice.empty()) advice += ' ';
     advice += kStoodStillAdvice;
@@ -160,6 +165,7 @@ SolvedCalibration solve(const CalibrationSnapshot& snapshot) {
                                     .estimate = found,
                                     .one_step = one_step,
                                     .lens_covariance = solved.lens_covariance,
+                                    .offset_jumped = besides.offset_jumped,
                                     .noise = options.noise,
                                     .wanted = options.start.wanted});
   if (!finding.lens_known) solved.lens_covariance.reset();

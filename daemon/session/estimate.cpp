@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "daemon/handeye/parts.hpp"
+#include "daemon/session/offset_check.hpp"
 #include "daemon/session/stopwatch.hpp"
 
 namespace handeye {
@@ -18,16 +19,6 @@ constexpr int kMostRounds = 4;
 constexpr std::int64_t kRest_ns = 150'000'000;
 // Of a difference of two poses, three axes each: passed by chance once in some thousands.
 constexpr double kRestSigmas = 6.0;
-
-std::optional<TimeOffset> correlate(std::span<const RegisteredFrame> frames,
-                                    const PoseBuffer& hand) {
-  std::vector<EyeSample> eye;
-  eye.reserve(frames.size());
-  for (const RegisteredFrame& frame : frames) {
-    eye.push_back({frame.timestamp_ns, frame.eye_from_scene, frame.part});
-  }
-  return correlate_angular_speed(hand, eye);
-}
 
 /// Whether the hand was where it was at the frame for as long as an offset may reach, before and
 /// after; frames at which it was not seen do not count.

@@ -30,6 +30,10 @@ std::optional<MethodSigma> sigma_of(const Method& method, const HandEyeSolution&
 
 }  // namespace
 
+MethodSigma sigma_of(const Matrix6d& covariance) {
+  return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
+}
+
 std::vector<MethodResult> compare_methods(std::span<const Method> methods,
                                           std::span<const PosePair> poses,
                                           const ComparisonOptions& options) {

@@ -33,4 +33,7 @@ inline std::vector<MethodResult> compare_methods(std::span<const Method> methods
   return compare_methods(methods, poses, ComparisonOptions{.scale = scale, .noise = noise});
 }
 
+/// Of the covariance of a hand_from_eye.
+MethodSigma sigma_of(const Matrix6d& covariance);
+
 }  // namespace handeye

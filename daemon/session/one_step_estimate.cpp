@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "daemon/session/one_step_check.hpp"
 #include "daemon/session/one_step_problem.hpp"
 #include "daemon/session/stopwatch.hpp"
 
@@ -14,9 +15,6 @@ namespace {
 // One step is linear in the offset within a few milliseconds; look up again beyond this.
 constexpr double kOffsetSettled_s = 0.0005;
 constexpr int kMostRounds = 3;
-// Of the tracker's residuals, against what they should be: beyond twice the noise it is no longer
-// the noise, but a wrong minimum or a tracker that thinks too well of itself.
-constexpr double kMostChi2 = 4.0;
 
 /// Whether most of the frames that the hand was seen at have the tracker's own word on it.
 bool is_measured(const OneStepProblem& problem) {
@@ -28,25 +26,19 @@ bool is_measured(const OneStepProblem& problem) {
   return measured > 0 && 2 * measured >= with_hand;
 }
 
-OneStepOptions options_for(const Lens& lens, const Estimate& start, HandNoiseSource hand_noise) {
+/// An estimate of the tracker's noise starts from what explains the likelihood's residuals.
+OneStepOptions options_for(const Lens& lens, const OneStepProblem& problem, const Estimate& start,
+                           HandNoiseSource hand_noise) {
   OneStepOptions options;
   if (lens.mode != IntrinsicsMode::kFixed) options.lens = lens.prior;
   const bool estimated = hand_noise == HandNoiseSource::kEstimated;
-  const PoseNoise& noise = estimated ? start.likelihood->noise : start.options.noise;
+  const PoseNoise noise =
+      estimated ? noise_of_samples(start.likelihood->noise, problem) : start.options.noise;
   options.hand_rotation_sigma_rad = noise.hand_rotation_rad;
   options.hand_translation_sigma_mm = noise.hand_translation_mm;
   options.hand_noise = hand_noise;
   options.estimate_time_offset = start.options.estimate_time_offset;
   return options;
-}
-
-/// Whether it fits the tracker as the likelihood's answer, which has seen less, did. That one's
-/// noise is where an estimate starts.
-bool explains_the_hand(const OneStepResult& result, const Estimate& start,
-                       HandNoiseSource hand_noise) {
-  const double reference =
-      hand_noise == HandNoiseSource::kGiven ? std::max(1.0, start.likelihood->chi2_per_dof) : 1.0;
-  return result.chi2_per_dof <= kMostChi2 * reference;
 }
 
 /// Sum of the squared distances from their mean.
@@ -82,17 +74,18 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
   if (!start.likelihood || start.scale == ScaleMode::kKnown) return std::nullopt;
   const Stopwatch stopwatch;
   OneStepEstimate estimate{.time_offset_s = start.time_offset_s, .hand_noise = hand_noise};
-  MaximumLikelihoodResult from = *start.likelihood;
+  estimate.start = *start.likelihood;
   bool settled = false;
   for (int round = 0; round < kMostRounds && !settled; ++round) {
-    const OneStepProblem problem = one_step_problem(reconstruction, hand, estimate.time_offset_s);
+    estimate.problem = one_step_problem(reconstruction, hand, estimate.time_offset_s);
+    const OneStepProblem& problem = estimate.problem;
     if (estimate.hand_noise == HandNoiseSource::kMeasured && !is_measured(problem)) {
       estimate.hand_noise = HandNoiseSource::kEstimated;
     }
-    const OneStepOptions options = options_for(reconstruction.lens, start, estimate.hand_noise);
-    auto found = one_step(problem, from, options);
+    estimate.options = options_for(reconstruction.lens, problem, start, estimate.hand_noise);
+    auto found = one_step(problem, estimate.start, estimate.options);
     if (!found) return std::nullopt;
-    if (!explains_the_hand(*found, start, estimate.hand_noise)) {
+    if (!explains_the_hand(*found, problem, estimate.options, start.likelihood->noise)) {
       if (estimate.hand_noise != HandNoiseSource::kMeasured) return std::nullopt;
       estimate.hand_noise = HandNoiseSource::kEstimated;
       continue;
@@ -100,12 +93,12 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
     estimate.result = std::move(*found);
     const double correction_s = estimate.result.time_offset_correction_s;
     estimate.time_offset_s += correction_s;
-    from.solution.hand_from_eye = estimate.result.hand_from_eye;
-    settled = !options.estimate_time_offset || std::abs(correction_s) < kOffsetSettled_s;
+    estimate.start.solution.hand_from_eye = estimate.result.hand_from_eye;
+    settled = !estimate.options.estimate_time_offset || std::abs(correction_s) < kOffsetSettled_s;
   }
   // An offset that runs away has no first order to be corrected by.
   if (!settled) return std::nullopt;
-  const auto scale = scale_of(from.part, reconstruction, estimate.result);
+  const auto scale = scale_of(estimate.start.part, reconstruction, estimate.result);
   estimate.solution = {estimate.result.hand_from_eye,
                        scale.value_or(start.likelihood->solution.scale_units_per_mm)};
   estimate.time_ms = stopwatch.elapsed_ms();

@@ -13,6 +13,9 @@ namespace handeye {
 
 /// Hand-eye in one step with everything that was seen (one_step.hpp), and the time offset with it.
 struct OneStepEstimate {
+  OneStepProblem problem;         ///< as it was solved at last,
+  MaximumLikelihoodResult start;  ///< from here,
+  OneStepOptions options;         ///< and so
   OneStepResult result;
   HandEyeSolution solution;  ///< its scale is that of the part that the likelihood's is of
   double time_offset_s{0};   ///< camera stamp = tracker stamp + this
@@ -24,8 +27,9 @@ struct OneStepEstimate {
 /// stays. A lens that was not given is free, with what was believed of it before the images.
 /// `hand_noise`: kMeasured becomes kEstimated where most frames have no covariance from the tracker
 /// (6dcov), or where the residuals contradict it. Nothing with a board, whose corners are no
-/// structure; where one_step finds none; and where that fits the tracker much worse than the
-/// likelihood's does, or its offset does not settle: then it is in a wrong minimum. Deterministic.
+/// structure; where one_step finds none; and where that does not explain the hand
+/// (one_step_check.hpp) or its offset does not settle: then it is in a wrong minimum.
+/// Deterministic.
 std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& reconstruction,
                                                     const PoseBuffer& hand, const Estimate& start,
                                                     HandNoiseSource hand_noise);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/one_step_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -22,12 +23,17 @@ bool is_placed_by_what_it_saw(const RegisteredFrame& frame) {
   return frame.keyframe || !frame.unit_covariance.isZero(0.0);
 }
 
+/// A point that a frame saw twice, as where two tracks were joined, counts once there.
 OneStepPoint to_point(const ScenePoint& point) {
   OneStepPoint result{.part = point.part, .point_scene = point.point_scene};
   result.observations.reserve(point.observations.size());
   for (const ScenePoint::Observation& seen : point.observations) {
     result.observations.push_back({seen.frame, seen.pixel});
   }
+  constexpr auto frame_of = &OneStepPoint::Observation::frame;
+  std::ranges::stable_sort(result.observations, {}, frame_of);
+  const auto again = std::ranges::unique(result.observations, {}, frame_of);
+  result.observations.erase(again.begin(), again.end());
   return result;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/provisional.hpp"
 
-#include <algorithm>
-
 #include "daemon/handeye/motion_facts.hpp"
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/lens_sensitivity.hpp"
+#include "daemon/session/method_comparison.hpp"
 
 namespace handeye {
 namespace {
@@ -20,15 +19,6 @@ bool is_answer(const Judgement& judgement) {
                              judgement.problem == MotionProblem::kFixedPoint;
   return turned_enough && judgement.halves_chi2.has_value() && judgement.covariance.allFinite() &&
          sigma_rotation_deg(judgement.covariance) <= kMeaningful_deg;
-}
-
-MethodSigma sigma_of(const Matrix6d& covariance) {
-  return {sigma_rotation_deg(covariance), sigma_translation_mm(covariance)};
-}
-
-/// How much better hand and eye agree at the offset than anywhere else.
-double confidence_of(const TimeOffset& offset) {
-  return std::clamp(offset.peak - std::max(offset.second_peak, 0.0), 0.0, 1.0);
 }
 
 JudgeOptions judge_options(const ProvisionalSnapshot& snapshot, const Estimate& so_far) {
@@ -52,7 +42,7 @@ void write_time_offset(const Estimate& so_far, Provisional& answer) {
   if (!so_far.correlation) return;
   answer.time_offset_s = so_far.time_offset_s;
   answer.time_offset_sigma_s = so_far.time_offset_sigma_s;
-  answer.time_offset_confidence = confidence_of(*so_far.correlation);
+  answer.time_offset_confidence = so_far.correlation->confidence;
 }
 
 void write_sigma(const ProvisionalSnapshot& snapshot, const Estimate& so_far,

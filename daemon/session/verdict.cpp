@@ -13,6 +13,10 @@ constexpr std::size_t kFewestBoardPoses = 4;
 // Below this share of frames with a visible hand, an uncertain answer is the tracker's fault; of
 // frames with a visible board, it is for want of the board.
 constexpr double kSeenEnough = 0.5;
+// Of 6 degrees of freedom: by chance once in 10 000, were both answers as uncertain as they say.
+constexpr double kContradiction = 27.9;
+// Of the noise that the tracker was said to have: beyond it the fit has found something else.
+constexpr double kMostNoise = 5.0;
 
 bool with_board(const Evidence& evidence) {
   return evidence.estimate.scale == ScaleMode::kKnown;
@@ -28,23 +32,68 @@ MotionProblem problem_without_reconstruction(const Evidence& evidence) {
   return problem == MotionProblem::kNone && no_parallax ? MotionProblem::kNoParallax : problem;
 }
 
-Judgement judged(const Evidence& evidence) {
+JudgeOptions options_for(const Evidence& evidence) {
   JudgeOptions options;
   options.wanted_rotation_deg = evidence.wanted.rotation_deg;
   options.wanted_translation_mm = evidence.wanted.translation_mm;
   options.solver = evidence.estimate.options;
-  const Estimate& estimate = evidence.estimate;
-  if (!evidence.one_step) return judge(estimate.observations, estimate.likelihood, options);
-  return judge(estimate.observations, *estimate.likelihood,
-               {.hand_from_eye = evidence.one_step->solution.hand_from_eye,
-                .covariance = evidence.one_step->result.covariance},
-               options);
+  return options;
 }
 
-/// Of the answer, halves and lens included. In one step the lens was free: its share is in there.
-Matrix6d covariance_of(const Judgement& judgement, const Evidence& evidence) {
-  if (evidence.one_step) return judgement.covariance;
-  return judgement.covariance + evidence.lens_covariance.value_or(Matrix6d::Zero());
+/// Of the likelihood's answer, without what an uncertain lens adds.
+Judgement judged_likelihood(const Evidence& evidence) {
+  return judge(evidence.estimate.observations, evidence.estimate.likelihood, options_for(evidence));
+}
+
+Judgement judged_one_step(const Evidence& evidence) {
+  const OneStepEstimate& found = *evidence.one_step;
+  const JudgedAnswer answer{
+      .hand_from_eye = found.solution.hand_from_eye,
+      .covariance = found.result.covariance,
+      .halves = compare_halves(found.problem, found.start, found.result, found.options)};
+  return judge(evidence.estimate.observations, *evidence.estimate.likelihood, answer,
+               options_for(evidence));
+}
+
+/// What the likelihood's answer, by all that it claims, its halves and the lens say, speaks against
+/// the one in one step: nothing within chance; else one of them is wrong, by as much as they
+/// differ.
+Matrix6d contradiction(const Evidence& evidence, const Matrix6d& of_one_step) {
+  if (!evidence.lens_covariance) return Matrix6d::Zero();
+  const HalvesComparison against =
+      compare(evidence.one_step->solution.hand_from_eye,
+              evidence.estimate.likelihood->solution.hand_from_eye,
+              judged_likelihood(evidence).covariance + *evidence.lens_covariance + of_one_step);
+  if (against.chi2 <= kContradiction) return Matrix6d::Zero();
+  return against.difference * against.difference.transpose();
+}
+
+/// The answer's judgement; its covariance with all that speaks against it, and the lens's share,
+/// which in one step, where the lens is free, is in there.
+Judgement judged(const Evidence& evidence) {
+  if (!evidence.one_step) {
+    Judgement judgement = judged_likelihood(evidence);
+    judgement.covariance += evidence.lens_covariance.value_or(Matrix6d::Zero());
+    return judgement;
+  }
+  Judgement judgement = judged_one_step(evidence);
+  judgement.covariance += contradiction(evidence, judgement.covariance);
+  return judgement;
+}
+
+/// Whether the answer can only be right if the tracker is far worse than it was said to be. What
+/// the tracker itself says of its measurements is believed; a board's noise is not the tracker's.
+bool takes_a_worse_tracker(const Evidence& evidence) {
+  const auto& likelihood = evidence.estimate.likelihood;
+  if (!likelihood || with_board(evidence)) return false;
+  PoseNoise noise = likelihood->noise;
+  if (evidence.one_step) {
+    if (evidence.one_step->hand_noise == HandNoiseSource::kMeasured) return false;
+    noise.hand_rotation_rad = evidence.one_step->result.hand_rotation_sigma_rad;
+    noise.hand_translation_mm = evidence.one_step->result.hand_translation_sigma_mm;
+  }
+  return noise.hand_rotation_rad > kMostNoise * evidence.noise.hand_rotation_rad ||
+         noise.hand_translation_mm > kMostNoise * evidence.noise.hand_translation_mm;
 }
 
 /// Whether the scope moved well enough, and the board was out of view while it did.
@@ -83,7 +132,8 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
   if (names_the_motion) return reason_of(problem);
   if (!lens_is_known(evidence)) return Reason::kLensUnobservable;
   // At a wrong offset the rest of the judgement means nothing.
-  if (!evidence.estimate.correlation && !evidence.estimate.stood_still) {
+  const bool no_offset = !evidence.estimate.correlation && !evidence.estimate.stood_still;
+  if (no_offset || evidence.offset_jumped) {
     return Reason::kClockUnstable;
   }
   const auto seen = static_cast<double>(evidence.estimate.observations.size());
@@ -168,16 +218,18 @@ Finding conclude(const Evidence& evidence) {
   if (evidence.reconstruction.frames.size() < fewest) return without_reconstruction(evidence);
   if (evidence.estimate.observations.size() < fewest) return without_answer(Reason::kTrackerLost);
   const Judgement judgement = judged(evidence);
-  const Matrix6d covariance = covariance_of(judgement, evidence);
+  const bool worse_tracker = takes_a_worse_tracker(evidence);
   MotionProblem problem = judgement.problem;
-  if (problem == MotionProblem::kNone && !is_wanted(covariance, evidence.wanted)) {
+  if (problem == MotionProblem::kNone &&
+      (!is_wanted(judgement.covariance, evidence.wanted) || worse_tracker)) {
     problem = MotionProblem::kUncertain;
   }
   const Reason reason = or_the_images(reason_after(problem, evidence), evidence);
   return {.reason = reason,
           .missing = blames_the_motion(reason) ? judgement.missing : MissingMotion::kNone,
           .judgement = judgement,
-          .covariance = covariance,
+          .covariance = judgement.covariance,
+          .worse_tracker = worse_tracker,
           .lens_known = lens_is_known(evidence)};
 }
 

@@ -70,7 +70,7 @@ TEST(Judge, RefusesWhatIsTooUncertain) {
 }
 
 /// The camera turns in its clip half-way: a small residual on either half, but not the same answer.
-Judgement judged_after_slip_of(double slip_deg) {
+std::vector<HandEyeObservation> after_slip_of(double slip_deg) {
   Recording recording = record(scope(), synthetic::free_hand, 400, tracker_and_camera(), 2);
   Pose slip = Pose::Identity();
   slip.linear() = exp_so3({0, 0, rad_from_deg(slip_deg)});
@@ -78,7 +78,23 @@ Judgement judged_after_slip_of(double slip_deg) {
     Pose& eye = recording.observations[k].poses.eye_from_scene;
     eye = slip * eye;
   }
-  return judged(recording.observations);
+  return recording.observations;
+}
+
+Judgement judged_after_slip_of(double slip_deg) {
+  return judged(after_slip_of(slip_deg));
+}
+
+/// An answer of another method that claims to be a hundred times as certain as the likelihood's.
+Judgement judged_boaster_after_slip_of(double slip_deg) {
+  const auto observations = after_slip_of(slip_deg);
+  const auto result = maximum_likelihood(observations);
+  if (!result) return {};
+  const JudgedAnswer answer{.hand_from_eye = result->solution.hand_from_eye,
+                            .covariance = 1e-4 * result->covariance,
+                            .halves = {},
+                            .log_scale_sigma = 1e-2 * result->log_scale_sigma};
+  return judge(observations, *result, answer);
 }
 
 TEST(Judge, RefusesWhenTheHalvesDisagree) {
@@ -93,6 +109,35 @@ TEST(Judge, TakesHalfOfTheHalvesDisagreementAsAnError) {
   EXPECT_GT(*judgement.halves_chi2, 27.9);
   EXPECT_EQ(judgement.problem, MotionProblem::kNone) << "0.15 deg where 0.3 were wanted";
   EXPECT_GE(sigma_rotation_deg(judgement.covariance), 0.14) << "never less than half the slip";
+}
+
+/// Were its claim to weigh the likelihood's halves, it would silence them.
+TEST(Judge, LetsNoAnswerSilenceTheHalvesOfAnother) {
+  const Judgement judgement = judged_boaster_after_slip_of(1.0);
+  EXPECT_EQ(judgement.problem, MotionProblem::kUncertain);
+  EXPECT_GE(sigma_rotation_deg(judgement.covariance), 0.45) << "half the slip";
+  EXPECT_EQ(judged_boaster_after_slip_of(0).problem, MotionProblem::kNone);
+}
+
+TEST(Judge, BelievesItsOwnWordOfTheScaleWhereItsHalvesAgree) {
+  const auto observations =
+      record(scope(), synthetic::free_hand, 300, tracker_and_camera(), 1).observations;
+  auto result = maximum_likelihood(observations);
+  ASSERT_TRUE(result);
+  result->log_scale_sigma = 0.5;
+  for (PartResult& part : result->parts) part.log_scale_sigma = 0.5;
+  JudgedAnswer answer{.hand_from_eye = result->solution.hand_from_eye,
+                      .covariance = result->covariance,
+                      .halves = compare_halves(observations, *result, {}),
+                      .log_scale_sigma = 0.01};
+  ASSERT_TRUE(answer.halves);
+  ASSERT_LT(answer.halves->chi2, JudgeOptions{}.halves_chi2_by_chance);
+  EXPECT_EQ(judge(observations, *result, answer).problem, MotionProblem::kNone);
+  answer.halves->difference *= 100;
+  answer.halves->chi2 *= 1e4;
+  EXPECT_NE(judge(observations, *result, answer).problem, MotionProblem::kNone);
+  answer.halves.reset();
+  EXPECT_NE(judge(observations, *result, answer).problem, MotionProblem::kNone);
 }
 
 TEST(Judge, NamesTheMotionOfTheHandAlone) {

@@ -39,6 +39,10 @@ CalibrationSnapshot snapshot_of(double claimed, HandNoiseSource source) {
   return calibration.snapshot();
 }
 
+Estimate estimate_of(const CalibrationSnapshot& snapshot) {
+  return estimate(snapshot.reconstruction.frames, snapshot.hand, snapshot.options.noise);
+}
+
 TEST(OneStepProblem, HasEveryFrameAndPointAndTheHandAtItsTime) {
   const CalibrationSnapshot snapshot = snapshot_of(1, HandNoiseSource::kMeasured);
   const Reconstruction& seen = snapshot.reconstruction;
@@ -72,6 +76,31 @@ TEST(OneStepProblem, LetsNoFrameCountOfWhichNothingIsKnown) {
   const OneStepProblem problem =
       one_step_problem(snapshot.reconstruction, snapshot.hand, tracked::kTimeOffset_s);
   EXPECT_FALSE(problem.frames[static_cast<std::size_t>(between - frames.begin())].hand);
+}
+
+TEST(OneStepProblem, CountsAPointOnceInAFrameThatSawItTwice) {
+  CalibrationSnapshot snapshot = snapshot_of(0, HandNoiseSource::kEstimated);
+  const Estimate start = estimate_of(snapshot);
+  const auto wanted = estimate_in_one_step(snapshot.reconstruction, snapshot.hand, start,
+                                           HandNoiseSource::kEstimated);
+  for (ScenePoint& point : snapshot.reconstruction.structure) {
+    point.observations.insert(point.observations.begin() + 1, point.observations.front());
+    point.observations[1].pixel.x() += 3;
+    point.observations.push_back(point.observations.front());
+  }
+  const auto found = estimate_in_one_step(snapshot.reconstruction, snapshot.hand, start,
+                                          HandNoiseSource::kEstimated);
+  ASSERT_TRUE(wanted && found);
+  EXPECT_EQ(found->result.hand_from_eye.matrix(), wanted->result.hand_from_eye.matrix());
+}
+
+/// Against the noise that the likelihood found: what "twice the noise" is counted from.
+TEST(OneStepEstimate, LeavesWhatTheLikelihoodLeft) {
+  const CalibrationSnapshot snapshot = snapshot_of(0, HandNoiseSource::kEstimated);
+  const auto found = estimate_in_one_step(snapshot.reconstruction, snapshot.hand,
+                                          estimate_of(snapshot), HandNoiseSource::kEstimated);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->result.chi2_per_dof, 1, 0.2);
 }
 
 TEST(OneStepEstimate, WeighsByTheTrackersWordOnlyWhereThereIsOneThatHolds) {

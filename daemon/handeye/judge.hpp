@@ -6,20 +6,10 @@
 
 #include "daemon/handeye/halves.hpp"
 #include "daemon/handeye/maximum_likelihood.hpp"
+#include "daemon/handeye/motion_problem.hpp"
 #include "daemon/handeye/observability.hpp"
 
 namespace handeye {
-
-/// What is wrong with a motion, in the order in which it is said (docs/math.md section 10).
-enum class MotionProblem {
-  kNone,
-  kNoMotion,              ///< nothing above the noise
-  kInsufficientRotation,  ///< translation only
-  kNoParallax,            ///< rotation about the camera's centre
-  kSingleAxis,            ///< all rotations about one axis
-  kFixedPoint,            ///< a pivot: scale and lever arm cannot be told apart
-  kUncertain,             ///< none of these, but not good enough
-};
 
 struct JudgeOptions {
   double wanted_rotation_deg{0.3};     ///< square root of the trace of w's block
@@ -68,14 +58,5 @@ Judgement judge(std::span<const HandEyeObservation> observations,
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options = {});
-
-/// What the hand's motion alone says, for when there are no eye poses: kNoMotion,
-/// kInsufficientRotation, kSingleAxis, kFixedPoint or kNone. With `images_without_parallax` (the
-/// reconstruction saw rotation only) a motion that turns is called kNoParallax.
-MotionProblem classify_hand_motion(std::span<const Pose> room_from_hand, const PoseNoise& noise,
-                                   bool images_without_parallax = false);
-
-/// What helps against it where nothing is known of the camera's axes; kNone for kNone.
-MissingMotion remedy(MotionProblem problem);
 
 }  // namespace handeye

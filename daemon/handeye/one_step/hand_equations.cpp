@@ -15,44 +15,33 @@ Vector6d whitened(const MetricFrame& frame, const Matrix6d& whitening, const Pos
 
 }  // namespace
 
-Vector6d HandRow::change(const MetricScene& scene, const Eigen::MatrixXd& steps,
+Vector6d HandRow::change(const MetricScene& scene, const MetricColumns& steps,
                          Eigen::Index column) const {
   const MetricFrame& of = scene.frames[frame];
-  const auto step = steps.col(column);
-  const Vector6d eye = (1.0 - of.share) * step.segment<6>(unknowns_of_eye(of.before)) +
-                       of.share * step.segment<6>(unknowns_of_eye(of.after));
-  return by_eye * eye + by_common * step.segment<kLensInCommon>(scene.common_at());
+  const auto common = steps.of_unknowns.col(column).segment<kLensInCommon>(scene.common_at());
+  const Eigen::Index before = unknowns_of_eye(of.before);
+  if (of.keyframe) {
+    return by_eye * steps.of_unknowns.col(column).segment<6>(before) + by_common * common;
+  }
+  const auto sighted = steps.by_sight.col(column);
+  return by_eye * ((1.0 - of.share) * sighted.segment<6>(before) +
+                   of.share * sighted.segment<6>(unknowns_of_eye(of.after))) +
+         by_common * common;
 }
 
-void HandRow::add_gradient(const MetricScene& scene, const Vector6d& value,
-                           Eigen::VectorXd& sum) const {
+void HandRow::add_gradient(const MetricScene& scene, const Vector6d& value, MetricColumns& sum,
+                           Eigen::Index column) const {
   const MetricFrame& of = scene.frames[frame];
   const Vector6d eye = by_eye.transpose() * value;
-  sum.segment<6>(unknowns_of_eye(of.before)) += (1.0 - of.share) * eye;
-  sum.segment<6>(unknowns_of_eye(of.after)) += of.share * eye;
-  sum.segment<kLensInCommon>(scene.common_at()) += by_common.transpose() * value;
-}
-
-void HandRow::add_information(const MetricScene& scene, Eigen::MatrixXd& information) const {
-  const MetricFrame& of = scene.frames[frame];
-  const Eigen::Index before = unknowns_of_eye(of.before);
-  const Eigen::Index after = unknowns_of_eye(of.after);
-  const Eigen::Index common = scene.common_at();
-  const Matrix6d eye = by_eye.transpose() * by_eye;
-  const Eigen::Matrix<double, kLensInCommon, 6> mixed = by_common.transpose() * by_eye;
-  information.block<kLensInCommon, kLensInCommon>(common, common) +=
-      by_common.transpose() * by_common;
-  if (before == after) {
-    information.block<6, 6>(before, before) += eye;
-    information.block<kLensInCommon, 6>(common, before) += mixed;
+  auto unknowns = sum.of_unknowns.col(column);
+  unknowns.segment<kLensInCommon>(scene.common_at()) += by_common.transpose() * value;
+  if (of.keyframe) {
+    unknowns.segment<6>(unknowns_of_eye(of.before)) += eye;
     return;
   }
-  const double share = of.share;
-  information.block<6, 6>(before, before) += (1.0 - share) * (1.0 - share) * eye;
-  information.block<6, 6>(after, before) += share * (1.0 - share) * eye;
-  information.block<6, 6>(after, after) += share * share * eye;
-  information.block<kLensInCommon, 6>(common, before) += (1.0 - share) * mixed;
-  information.block<kLensInCommon, 6>(common, after) += share * mixed;
+  auto sighted = sum.by_sight.col(column);
+  sighted.segment<6>(unknowns_of_eye(of.before)) += (1.0 - of.share) * eye;
+  sighted.segment<6>(unknowns_of_eye(of.after)) += of.share * eye;
 }
 
 std::vector<HandRow> hand_rows(const MetricScene& scene, const MetricState& state,

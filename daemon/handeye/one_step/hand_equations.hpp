@@ -7,21 +7,27 @@
 
 namespace handeye {
 
+/// Steps of the unknowns, or gradients by them, a column each.
+struct MetricColumns {
+  Eigen::MatrixXd of_unknowns;  ///< keyframes and common
+  Eigen::MatrixXd by_sight;     ///< keyframes by sight (sight.hpp), (w, dC) like the keyframes
+};
+
 /// A frame's tracker residual, whitened, and how it changes with the unknowns that it knows of.
 struct HandRow {
   std::size_t frame{0};  ///< position in MetricScene::frames
   double weight{1};      ///< of Huber's loss
   Vector6d residual;     ///< weighted by its root
-  Matrix6d by_eye;       ///< of the frame: its keyframes move it by their shares; likewise
+  /// Of the frame's eye: a keyframe's own, or as keyframes by sight move it by their shares;
+  /// likewise
+  Matrix6d by_eye;
   Eigen::Matrix<double, 6, kLensInCommon> by_common;  ///< hand_from_eye and time; likewise
 
-  /// What steps of the unknowns do to the residual; column of `steps`.
-  Vector6d change(const MetricScene& scene, const Eigen::MatrixXd& steps,
-                  Eigen::Index column = 0) const;
+  /// What steps do to the residual; column of `steps`.
+  Vector6d change(const MetricScene& scene, const MetricColumns& steps, Eigen::Index column) const;
   /// Adds J^T value.
-  void add_gradient(const MetricScene& scene, const Vector6d& value, Eigen::VectorXd& sum) const;
-  /// Adds J^T J; the lower triangle.
-  void add_information(const MetricScene& scene, Eigen::MatrixXd& information) const;
+  void add_gradient(const MetricScene& scene, const Vector6d& value, MetricColumns& sum,
+                    Eigen::Index column) const;
 };
 
 /// Which frames' hands count and from which norm on less.

@@ -82,7 +82,16 @@ HandDerivatives hand_derivatives(const HandAtFrame& hand, const Pose& room_from_
   return result;
 }
 
-std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& state) {
+std::vector<Pose> eyes_at_start(const MetricScene& scene) {
+  std::vector<Pose> eyes;
+  eyes.reserve(scene.frames.size());
+  for (const MetricFrame& frame : scene.frames) eyes.push_back(frame.room_from_eye_start);
+  return eyes;
+}
+
+std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& state,
+                                 const std::vector<Pose>& sighted_at_start,
+                                 const std::vector<Pose>& sighted) {
   std::vector<Similarity> moved_parts;
   for (std::size_t part = 0; part < scene.keyframes_of_parts.size(); ++part) {
     moved_parts.push_back(similarity_of(scene, state, part));
@@ -96,8 +105,7 @@ std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& st
     }
     const Similarity& part = moved_parts[frame.part];
     const auto left_over = [&](std::size_t keyframe) {
-      return step_between(part.moved(scene.keyframes_at_start[keyframe]),
-                          state.room_from_eye[keyframe]);
+      return step_between(part.moved(sighted_at_start[keyframe]), sighted[keyframe]);
     };
     const Vector6d step =
         (1.0 - frame.share) * left_over(frame.before) + frame.share * left_over(frame.after);

@@ -20,9 +20,14 @@ struct HandDerivatives {
 HandDerivatives hand_derivatives(const HandAtFrame& hand, const Pose& room_from_eye,
                                  const MetricState& state);
 
+std::vector<Pose> eyes_at_start(const MetricScene& scene);
+
 /// room_from_eye of every frame of the scene. A frame that is no keyframe goes where its part as a
-/// whole went since the start (a similarity), and from there as the keyframes beside it do, in
-/// shares: what resection saw between it and them is kept.
-std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& state);
+/// whole went since the start (a similarity), and from there as the keyframes beside it do by sight
+/// (sight.hpp), in shares: what resection saw between it and the structure is kept. Empty
+/// `sighted`: where no frame follows.
+std::vector<Pose> eyes_of_frames(const MetricScene& scene, const MetricState& state,
+                                 const std::vector<Pose>& sighted_at_start,
+                                 const std::vector<Pose>& sighted);
 
 }  // namespace handeye

@@ -25,6 +25,12 @@ std::vector<Eye> eyes_of(const MetricState& state) {
 
 }  // namespace
 
+Matrix26 pixel_by_eye(const ImageRow& row) {
+  Matrix26 result;
+  result << row.by_point * skew(row.point_from_eye_mm), -row.by_point;
+  return result;
+}
+
 bool linearise(const MetricScene& scene, const MetricState& state, double huber_px, bool lens_free,
                ImageRows& rows) {
   if (state.camera.problem()) return false;

@@ -18,6 +18,10 @@ struct ImageRow {
   Eigen::Matrix<double, 2, kLensParameters> by_lens;  ///< only where the lens is free
 };
 
+using Matrix26 = Eigen::Matrix<double, 2, 6>;
+/// By (w, dC) of the keyframe that sees it.
+Matrix26 pixel_by_eye(const ImageRow& row);
+
 /// All observations at a state.
 struct ImageRows {
   std::vector<ImageRow> rows;  ///< as MetricScene::observations

@@ -19,7 +19,7 @@ using RowByCommon = Eigen::Matrix<double, 6, kCommonUnknowns>;
 
 /// What the tracker's errors, whitened, move the common unknowns by.
 std::vector<RowByCommon> answers_to_hands(const MetricProblem& problem,
-                                          const Eigen::MatrixXd& by_common) {
+                                          const MetricColumns& by_common) {
   std::vector<RowByCommon> answers;
   answers.reserve(problem.hand_rows().size());
   for (const HandRow& row : problem.hand_rows()) {
@@ -29,6 +29,23 @@ std::vector<RowByCommon> answers_to_hands(const MetricProblem& problem,
     }
   }
   return answers;
+}
+
+/// How much of `of_hands` is not the tracker's, but of the resection of frames that follow.
+CommonMatrix resected_part(const MetricProblem& problem, const std::vector<RowByCommon>& answers) {
+  const bool measured = problem.options().hand_noise == HandNoiseSource::kMeasured;
+  CommonMatrix sum = CommonMatrix::Zero();
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    const std::size_t at = problem.hand_rows()[k].frame;
+    const MetricFrame& frame = problem.scene().frames[at];
+    if (frame.keyframe) continue;
+    const Matrix6d& whitening = problem.hands().weights.whitenings[at];
+    const Matrix6d of_tracker = interpolated_variance(*frame.hand) * whitening *
+                                sample_covariance(*frame.hand, problem.noise(), measured) *
+                                whitening.transpose();
+    sum += answers[k].transpose() * (Matrix6d::Identity() - of_tracker) * answers[k];
+  }
+  return sum;
 }
 
 /// What frames that share samples add.
@@ -78,20 +95,23 @@ CommonMatrix prior_part(const MetricProblem& problem, const CommonMatrix& base) 
 
 /// What the errors along whole tracks, as they were, move the common unknowns by.
 std::vector<CommonVector> pulls_of_tracks(const MetricProblem& problem,
-                                          const Eigen::MatrixXd& by_common) {
+                                          const MetricColumns& by_common) {
   const MetricScene& scene = problem.scene();
-  const double variance_px2 = problem.noise().image_px * problem.noise().image_px;
   const double errors = 2.0 * static_cast<double>(scene.observations.size()) -
                         3.0 * static_cast<double>(scene.points());
   const double taken = std::max(1.0, errors / image_freedom(problem));
-  return problem.elimination().pulls_of_points(by_common * (taken / variance_px2));
+  std::vector<CommonVector> pulls = problem.equations().pulls_of_points(by_common);
+  for (CommonVector& pull : pulls) pull *= taken;
+  return pulls;
 }
 
 /// The covariance of the unknowns listed, widened in every direction to what it is when the images'
 /// part comes from whole tracks, where that is more than chance in the number of tracks; zero
-/// elsewhere.
+/// elsewhere. `resected`: the part of frames that follow. Their images show the same tracks, so
+/// that where errors agree along these, theirs add to the keyframes', as errors and not as
+/// variances.
 CommonMatrix widened_by_tracks(const CommonMatrix& covariance, const CommonMatrix& of_images,
-                               const std::vector<CommonVector>& pulls,
+                               const CommonMatrix& resected, const std::vector<CommonVector>& pulls,
                                const std::vector<Eigen::Index>& listed) {
   CommonMatrix spread = CommonMatrix::Zero();
   for (const CommonVector& pull : pulls) spread += pull * pull.transpose();
@@ -107,7 +127,13 @@ CommonMatrix widened_by_tracks(const CommonMatrix& covariance, const CommonMatri
     }
     // Of a sum of squared normal deviates.
     const double chance = kChance * std::sqrt(2.0 / 3.0 * fourth_powers);
-    if (eigen.eigenvalues()[i] > chance) factors[i] += eigen.eigenvalues()[i];
+    const double excess = eigen.eigenvalues()[i];
+    if (excess <= chance) continue;
+    const auto along = [&](const CommonMatrix& part) {
+      const Eigen::VectorXd direction = eigen.eigenvectors().col(i);
+      return direction.dot(part(listed, listed) * direction);
+    };
+    factors[i] += excess * std::pow(1.0 + std::sqrt(along(resected) / along(of_images)), 2);
   }
   const Eigen::MatrixXd directions = base * eigen.eigenvectors();
   CommonMatrix result = CommonMatrix::Zero();
@@ -118,10 +144,10 @@ CommonMatrix widened_by_tracks(const CommonMatrix& covariance, const CommonMatri
 }  // namespace
 
 MetricCovariance metric_covariance(const MetricProblem& problem, double hand_freedom) {
-  Eigen::MatrixXd by_common = Eigen::MatrixXd::Zero(problem.scene().unknowns(), kCommonUnknowns);
-  by_common.bottomRows<kCommonUnknowns>().setIdentity();
-  by_common = problem.solve(by_common);
-  const CommonMatrix base = by_common.bottomRows<kCommonUnknowns>();
+  MetricColumns unit = problem.equations().zero(kCommonUnknowns);
+  unit.of_unknowns.bottomRows<kCommonUnknowns>().setIdentity();
+  const MetricColumns by_common = problem.equations().solve(unit);
+  const CommonMatrix base = by_common.of_unknowns.bottomRows<kCommonUnknowns>();
 
   const std::vector<RowByCommon> answers = answers_to_hands(problem, by_common);
   CommonMatrix of_hands = CommonMatrix::Zero();
@@ -137,7 +163,11 @@ MetricCovariance metric_covariance(const MetricProblem& problem, double hand_fre
   for (Eigen::Index i = 0; i < kCommonUnknowns; ++i) {
     if (problem.estimates(i)) estimated.push_back(i);
   }
+  const double followers = static_cast<double>(problem.scene().frames.size()) /
+                               static_cast<double>(problem.scene().keyframes()) -
+                           1.0;
   result.covariance = widened_by_tracks(of_independent_tracks, of_images,
+                                        followers * resected_part(problem, answers),
                                         pulls_of_tracks(problem, by_common), estimated);
   return result;
 }

@@ -17,6 +17,12 @@ constexpr double kMaxDamping = 1e6;  // no step is small enough
 constexpr double kFirstDamping = 1e-3;
 constexpr double kSlow = 0.1;  // of a promise to the one before: linearise anew
 
+/// So much more cost is none: what frames do that follow is known to first order only, and where
+/// the gradient is zero, not where the cost's last digit is least, is the minimum.
+constexpr double kNoIncrease = 0.01;
+/// Where hardly anything but the scale is wrong, a step along it bends: the images fall ill and are
+/// well again a step later. Damped steps would creep (watchdog: Chamberlain et al. 1982).
+constexpr int kMostUphill = 3;
 constexpr double kNearNoise = 0.1;  // relative: the equations still point the right way
 
 double square(double x) {
@@ -40,14 +46,10 @@ MetricProblem::MetricProblem(const MetricScene& scene, const OneStepOptions& opt
       state_(scene.start),
       huber_of_image_(huber_norm(kImageDimensions, options.huber)),
       huber_of_hand_(huber_norm(kHandDimensions, options.huber)),
-      elimination_(scene) {
+      equations_(scene, options_) {
   for (const MetricFrame& frame : scene.frames) hands_.kept.push_back(frame.hand.has_value());
   hands_.huber = huber_of_hand_.norm;
-}
-
-bool MetricProblem::estimates(Eigen::Index common) const {
-  if (common == kTimeInCommon) return options_.estimate_time_offset;
-  return common < kLensInCommon || lens_free();
+  here_.eyes = eyes_at_start(scene);
 }
 
 double MetricProblem::robust_image_squares() const {
@@ -69,73 +71,57 @@ double MetricProblem::prior_cost(const MetricState& state) const {
 bool MetricProblem::evaluate(const MetricState& state, Place& place) const {
   const double huber_px = huber_of_image_.norm * noise_.image_px;
   if (!linearise(scene_, state, huber_px, lens_free(), place.rows)) return false;
-  place.eyes = eyes_of_frames(scene_, state);
+  if (scene_.has_followers()) place.sighted = keyframes_by_sight(scene_, state, place.rows);
+  const std::vector<Pose>& at_start = sighted_at_start_.empty() ? place.sighted : sighted_at_start_;
+  place.eyes = eyes_of_frames(scene_, state, at_start, place.sighted);
   place.cost = place.rows.cost / square(noise_.image_px) +
                hand_cost(scene_, state, place.eyes, hands_) + prior_cost(state);
   return std::isfinite(place.cost);
 }
 
-void MetricProblem::add_priors(Eigen::VectorXd& gradient) const {
-  const Eigen::Index common = scene_.common_at();
+MetricColumns MetricProblem::gradient() const {
+  MetricColumns sum = equations_.zero(1);
+  for (const HandRow& row : hand_rows_) row.add_gradient(scene_, row.residual, sum, 0);
+  auto of_unknowns = sum.of_unknowns.col(0);
   if (options_.estimate_time_offset) {
-    gradient[common + kTimeInCommon] += state_.time_offset_s / square(options_.time_offset_prior_s);
+    of_unknowns[scene_.common_at() + kTimeInCommon] +=
+        state_.time_offset_s / square(options_.time_offset_prior_s);
   }
   if (lens_free()) {
     const LensVector off = lens_vector(state_.camera) - options_.lens->mean;
-    gradient.tail<kLensParameters>() +=
+    of_unknowns.tail<kLensParameters>() +=
         off.cwiseQuotient(options_.lens->sigma.cwiseProduct(options_.lens->sigma));
   }
-}
-
-void MetricProblem::hold(Eigen::VectorXd& gradient) const {
-  for (Eigen::Index i = 0; i < kCommonUnknowns; ++i) {
-    if (!estimates(i)) gradient[scene_.common_at() + i] = 0;
-  }
+  return sum;
 }
 
 bool MetricProblem::factorise(double damping) {
-  Eigen::MatrixXd information = elimination_.information() / square(noise_.image_px);
-  for (const HandRow& row : hand_rows_) row.add_information(scene_, information);
-  const Eigen::Index common = scene_.common_at();
-  if (options_.estimate_time_offset) {
-    information(common + kTimeInCommon, common + kTimeInCommon) +=
-        1.0 / square(options_.time_offset_prior_s);
-  }
-  for (Eigen::Index i = 0; i < kLensParameters && lens_free(); ++i) {
-    const Eigen::Index at = common + kLensInCommon + i;
-    information(at, at) += 1.0 / square(options_.lens->sigma[i]);
-  }
-  for (Eigen::Index i = common; i < scene_.unknowns(); ++i) {
-    if (estimates(i - common)) continue;
-    information.row(i).head(i).setZero();
-    information.col(i).tail(scene_.unknowns() - i - 1).setZero();
-    information(i, i) = 1;
-  }
-  information.diagonal() *= 1.0 + damping;
-  factor_.compute(information);
   factor_noise_.reset();
   if (damping == 0) factor_noise_ = noise_;
-  return factor_.info() == Eigen::Success;
+  return equations_.factorise(hand_rows_, noise_.image_px, damping);
 }
 
 void MetricProblem::eliminate_points() {
-  elimination_.eliminate(here_.rows, lens_free());
+  equations_.linearise(here_.rows);
   eliminated_ = at_elimination_ = true;
 }
 
 void MetricProblem::set_noise(const MetricNoise& noise) {
   noise_ = noise;
-  hands_.weights = hand_weights(scene_, eyes_of_frames(scene_, state_), state_, noise,
+  hands_.weights = hand_weights(scene_, here_.eyes, state_, noise,
                                 options_.hand_noise == HandNoiseSource::kMeasured);
 }
 
 bool MetricProblem::minimise(MetricNoise noise) {
   set_noise(noise);
   if (!evaluate(state_, here_)) return false;
+  // The first time is at the start.
+  if (sighted_at_start_.empty()) sighted_at_start_ = here_.sighted;
   at_elimination_ = false;
   bool factorised = eliminated_ && factor_noise_ && are_near(*factor_noise_, noise_);
   double damping = 0;
   double promised_before = 0;
+  int uphill = 0;
   for (int i = 0; i < options_.max_iterations; ++i) {
     hand_rows_ = handeye::hand_rows(scene_, state_, here_.eyes, hands_);
     const ImageGradient of_images = gradient_of(scene_, here_.rows, lens_free());
@@ -143,35 +129,44 @@ bool MetricProblem::minimise(MetricNoise noise) {
     if (!factorised && !factorise(damping)) return false;
     factorised = true;
 
-    const double weight = 1.0 / square(noise_.image_px);
-    Eigen::VectorXd gradient = weight * elimination_.reduced(of_images);
-    for (const HandRow& row : hand_rows_) row.add_gradient(scene_, row.residual, gradient);
-    add_priors(gradient);
-    hold(gradient);
-    const Eigen::VectorXd step = -factor_.solve(gradient);
-    if (!step.allFinite()) return false;
-    const double promised =
-        -0.5 * gradient.dot(step) + weight * elimination_.promised_by_points(of_images);
+    const NormalEquations::Step step = equations_.step(of_images, gradient());
+    if (!step.of_unknowns.allFinite()) return false;
+    const double promised = step.promised;
     if (promised < kSettled) break;
     ++iterations_;
-    const MetricState tried = moved_by(state_, step, elimination_.point_steps(of_images, step));
-    if (evaluate(tried, next_) && next_.cost < here_.cost) {
-      state_ = tried;
+    MetricState tried = moved_by(state_, step.of_unknowns, step.of_points);
+    const bool possible = evaluate(tried, next_);
+    const double least = least_ ? least_->cost : here_.cost;
+    const bool lower = possible && next_.cost < least + kNoIncrease;
+    if (lower || (possible && damping == 0 && uphill < kMostUphill)) {
+      if (!lower && !least_) least_ = Stand{state_, here_.cost};
+      if (lower) least_.reset();
+      uphill = lower ? 0 : uphill + 1;
+      state_ = std::move(tried);
       std::swap(here_, next_);
       // Far from where they were linearised the equations point the wrong way, or not far enough.
-      if (promised_before > 0 && promised > kSlow * promised_before) eliminated_ = false;
+      if (!lower || (promised_before > 0 && promised > kSlow * promised_before)) {
+        eliminated_ = false;
+      }
       factorised = factorised && eliminated_ && damping == 0;
       at_elimination_ = false;
       damping = damping > kFirstDamping ? 0.1 * damping : 0;
       promised_before = promised;
     } else {
       if (damping > kMaxDamping) break;
-      if (at_elimination_) damping = std::max(10.0 * damping, kFirstDamping);
-      eliminated_ = at_elimination_;
+      const bool back = least_.has_value();
+      if (back) state_ = std::exchange(least_, std::nullopt)->state;
+      if (at_elimination_ || back) damping = std::max(10.0 * damping, kFirstDamping);
+      eliminated_ = at_elimination_ && !back;
       factorised = false;
       // The rows went into the elimination: they are wanted again.
       if (!evaluate(state_, here_)) return false;
     }
+  }
+  if (least_) {
+    state_ = std::exchange(least_, std::nullopt)->state;
+    eliminated_ = false;
+    if (!evaluate(state_, here_)) return false;
   }
   return true;
 }

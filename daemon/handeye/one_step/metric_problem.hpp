@@ -4,11 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "daemon/handeye/one_step/hand_equations.hpp"
 #include "daemon/handeye/one_step/huber_norm.hpp"
-#include "daemon/handeye/one_step/point_elimination.hpp"
+#include "daemon/handeye/one_step/normal_equations.hpp"
 
 namespace handeye {
 
@@ -24,7 +22,7 @@ class MetricProblem {
   void keep(std::vector<bool> kept) { hands_.kept = std::move(kept); }
   /// From where it stands; false where the equations determine nothing.
   bool minimise(MetricNoise noise);
-  /// Linearises everything where it stands, for `solve`; false as above.
+  /// Linearises everything where it stands, for `equations`; false as above.
   bool linearise_anew();
 
   const MetricScene& scene() const { return scene_; }
@@ -35,7 +33,7 @@ class MetricProblem {
   const HandSelection& hands() const { return hands_; }
   const std::vector<Pose>& eyes() const { return here_.eyes; }
   const std::vector<HandRow>& hand_rows() const { return hand_rows_; }
-  const PointElimination& elimination() const { return elimination_; }
+  const NormalEquations& equations() const { return equations_; }
   double image_squares() const { return here_.rows.squares; }  ///< [px^2]
   /// Likewise weighted by the loss, and made good for what the loss takes from inliers.
   double robust_image_squares() const;
@@ -43,24 +41,27 @@ class MetricProblem {
   double share_of_hand_squares() const { return huber_of_hand_.share_of_squares; }
   bool lens_free() const { return options_.lens.has_value(); }
   /// Of the common unknowns; else it keeps its value.
-  bool estimates(Eigen::Index common) const;
+  bool estimates(Eigen::Index common) const { return equations_.estimates(common); }
   int iterations() const { return iterations_; }
-
-  /// H^-1 right: H is the information of keyframes and common unknowns as last linearised.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const { return factor_.solve(right); }
 
  private:
   /// A place that is tried, or taken.
   struct Place {
     ImageRows rows;
     std::vector<Pose> eyes;
+    std::vector<Pose> sighted;  ///< keyframes by sight, where frames follow
+    double cost{0};
+  };
+
+  /// Where the cost was least before it went up for some steps.
+  struct Stand {
+    MetricState state;
     double cost{0};
   };
 
   bool evaluate(const MetricState& state, Place& place) const;
   double prior_cost(const MetricState& state) const;
-  void add_priors(Eigen::VectorXd& gradient) const;
-  void hold(Eigen::VectorXd& gradient) const;
+  MetricColumns gradient() const;  ///< of hands and priors
   bool factorise(double damping);
   void eliminate_points();
   void set_noise(const MetricNoise& noise);
@@ -71,12 +72,13 @@ class MetricProblem {
   MetricNoise noise_;
   HandSelection hands_;
   HuberNorm huber_of_image_, huber_of_hand_;
-  PointElimination elimination_;
+  NormalEquations equations_;
+  std::vector<Pose> sighted_at_start_;
   bool eliminated_{false};      ///< at a place that was taken
   bool at_elimination_{false};  ///< and has not been left
   Place here_, next_;
+  std::optional<Stand> least_;
   std::vector<HandRow> hand_rows_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
   std::optional<MetricNoise> factor_noise_;  ///< nothing: none, or damped
   int iterations_{0};
 };

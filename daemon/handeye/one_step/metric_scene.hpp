@@ -44,7 +44,8 @@ struct MetricFrame {
   std::size_t frame{0};  ///< position in OneStepProblem::frames
   std::size_t part{0};   ///< position in MetricScene::keyframes_of_parts
   bool keyframe{false};
-  /// The keyframes that it moves with, by the shares 1 - b and b; a keyframe only with itself.
+  /// The keyframes that it moves with, by the shares 1 - b and b; a keyframe only with itself, one
+  /// that is none with them by sight (sight.hpp).
   std::size_t before{0}, after{0};
   double share{0};                             ///< b, 0..1
   Pose room_from_eye_start{Pose::Identity()};  ///< where the start places it
@@ -62,6 +63,7 @@ struct MetricScene {
   std::vector<std::size_t> first_of_point;      ///< in `observations`; one more than points
   MetricState start;
 
+  bool has_followers() const { return frames.size() > keyframes_at_start.size(); }
   std::size_t keyframes() const { return keyframes_at_start.size(); }
   std::size_t points() const { return start.points_mm.size(); }
   Eigen::Index common_at() const { return unknowns_of_eye(keyframes()); }

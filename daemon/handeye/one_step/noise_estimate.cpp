@@ -52,16 +52,14 @@ Leverage hand_leverage(const MetricProblem& problem) {
   for (Eigen::Index i = 0; i < probes.size(); ++i) {
     probes(i) = (generator() & 1U) != 0 ? 1.0 : -1.0;
   }
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(scene.unknowns(), kProbes);
-  for (int probe = 0; probe < kProbes; ++probe) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(scene.unknowns());
-    for (Eigen::Index k = 0; k < n; ++k) {
+  MetricColumns right = problem.equations().zero(kProbes);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (int probe = 0; probe < kProbes; ++probe) {
       rows[static_cast<std::size_t>(k)].add_gradient(scene, probes.col(probe).segment<6>(6 * k),
-                                                     sum);
+                                                     right, probe);
     }
-    right.col(probe) = sum;
   }
-  const Eigen::MatrixXd answers = problem.solve(right);
+  const MetricColumns answers = problem.equations().solve(right);
   Leverage leverage;
   leverage.variances.assign(rows.size(), Vector6d::Zero());
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -90,7 +88,7 @@ MetricNoise noise_at_start(const MetricScene& scene, const OneStepOptions& optio
                                         kLeastImageNoise_px);
   }
   if (options.hand_noise != HandNoiseSource::kEstimated) return noise;
-  const std::vector<Pose> eyes = eyes_of_frames(scene, scene.start);
+  const std::vector<Pose> eyes = eyes_at_start(scene);
   std::vector<double> rotations;
   std::vector<double> translations;
   for (std::size_t k = 0; k < scene.frames.size(); ++k) {

@@ -101,11 +101,11 @@ struct OneStepResult {
 ///   reprojection of every point in every keyframe, and
 ///   for every frame the hand that the camera implies, room_from_eye * eye_from_hand, against the
 ///   tracker's at its time.
-/// The scale needs no unknown: the tracker gives it. Frames that are no keyframes follow the
-/// keyframes beside them, at the movement between them that the reconstruction saw.
-/// `start`: of the same frames, for where X and every part's scene lie. Deterministic, one thread.
-/// Nothing where numbers are not finite, fewer than three frames have a hand, or the normal
-/// equations determine nothing.
+/// The scale needs no unknown: the tracker gives it. Frames that are no keyframes were resected
+/// against the structure and follow it (sight.hpp); what their images say of the structure itself
+/// is not known here: the more keyframes, the better. `start`: of the same frames, for where X and
+/// every part's scene lie. Deterministic, one thread. Nothing where numbers are not finite, fewer
+/// than three frames have a hand, or the normal equations determine nothing.
 std::optional<OneStepResult> one_step(const OneStepProblem& problem,
                                       const MaximumLikelihoodResult& start,
                                       const OneStepOptions& options = {});

@@ -11,14 +11,6 @@ namespace {
 /// So little, against the point's best-known direction, that no direction is without a step.
 constexpr double kLeastInformation = 1e-10;
 
-using Matrix26 = Eigen::Matrix<double, 2, 6>;
-
-Matrix26 by_eye(const ImageRow& row) {
-  Matrix26 result;
-  result << row.by_point * skew(row.point_from_eye_mm), -row.by_point;
-  return result;
-}
-
 /// W^T step: what a keyframe's step does to the gradient of the point.
 Eigen::Vector3d point_pull(const ImageRow& row, const Vector6d& eye_step) {
   const Eigen::Vector3d moved =
@@ -33,10 +25,12 @@ void PointElimination::eliminate(ImageRows& rows, bool lens_free) {
   lens_free_ = lens_free;
   const std::size_t n = scene_.keyframes();
   blocks_.assign(n * (n + 1) / 2, Matrix6d::Zero());
+  of_eyes_.assign(n, Matrix6d::Zero());
   lens_by_eye_.assign(n, Matrix6d::Zero());
   lens_.setZero();
   inverse_roots_.resize(scene_.points());
   for (std::size_t j = 0; j < scene_.points(); ++j) add_point(j);
+  for (std::size_t k = 0; k < n; ++k) blocks_[block(k, k)] += of_eyes_[k];
   write_information();
 }
 
@@ -56,10 +50,10 @@ void PointElimination::add_point(std::size_t j) {
   for (std::size_t i = begin; i < end; ++i) {
     const ImageRow& row = rows_[i];
     const std::size_t k = scene_.observations[i].keyframe;
-    const Matrix26 eye = by_eye(row);
+    const Matrix26 eye = pixel_by_eye(row);
     const Eigen::Matrix<double, 2, 3> whitened = row.by_point * inverse_root.transpose();
     eliminated_[i - begin].noalias() = eye.transpose() * whitened;
-    blocks_[block(k, k)].noalias() += eye.transpose() * eye;
+    of_eyes_[k].noalias() += eye.transpose() * eye;
     if (!lens_free_) continue;
     lens_eliminated.noalias() += row.by_lens.transpose() * whitened;
     lens_by_eye_[k].noalias() += row.by_lens.transpose() * eye;
@@ -136,8 +130,17 @@ std::vector<Eigen::Vector3d> PointElimination::point_steps(const ImageGradient& 
 }
 
 std::vector<CommonVector> PointElimination::pulls_of_points(
-    const Eigen::MatrixXd& by_gradient) const {
+    const Eigen::MatrixXd& by_gradient, const Eigen::MatrixXd& for_points) const {
+  using CommonBy2 = Eigen::Matrix<double, kCommonUnknowns, 2>;
   using CommonBy3 = Eigen::Matrix<double, kCommonUnknowns, 3>;
+  const auto by_error = [&](const Eigen::MatrixXd& answers, const ImageRow& row, std::size_t k) {
+    CommonBy2 result =
+        answers.middleRows<6>(unknowns_of_eye(k)).transpose() * pixel_by_eye(row).transpose();
+    if (lens_free_) {
+      result += answers.bottomRows<kLensParameters>().transpose() * row.by_lens.transpose();
+    }
+    return result;
+  };
   std::vector<CommonVector> pulls;
   pulls.reserve(scene_.points());
   for (std::size_t j = 0; j < scene_.points(); ++j) {
@@ -146,14 +149,9 @@ std::vector<CommonVector> PointElimination::pulls_of_points(
     Eigen::Vector3d of_point = Eigen::Vector3d::Zero();
     for (std::size_t i = scene_.first_of_point[j]; i < scene_.first_of_point[j + 1]; ++i) {
       const ImageRow& row = rows_[i];
-      Eigen::Matrix<double, kCommonUnknowns, 2> by_error =
-          by_gradient.middleRows<6>(unknowns_of_eye(scene_.observations[i].keyframe)).transpose() *
-          by_eye(row).transpose();
-      if (lens_free_) {
-        by_error += by_gradient.bottomRows<kLensParameters>().transpose() * row.by_lens.transpose();
-      }
-      pull += by_error * row.error;
-      by_point += by_error * row.by_point;
+      const std::size_t k = scene_.observations[i].keyframe;
+      pull += by_error(by_gradient, row, k) * row.error;
+      by_point += by_error(for_points, row, k) * row.by_point;
       of_point += row.by_point.transpose() * row.error;
     }
     pull -= by_point * (inverse_roots_[j].transpose() * (inverse_roots_[j] * of_point));

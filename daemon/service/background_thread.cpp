@@ -3,6 +3,8 @@
 
 #include <sys/resource.h>
 
+#include <spdlog/spdlog.h>
+
 namespace handeye {
 
 BackgroundThread::BackgroundThread(int niceness)
@@ -38,6 +40,10 @@ void BackgroundThread::work(const std::stop_token& stop, int niceness) {
     // The next one may have been posted since the answer was there.
     busy_ = static_cast<bool>(job_);
   }
+}
+
+void log_failure(std::string_view what, std::string_view why) {
+  spdlog::error("{} failed: {}", what, why);
 }
 
 }  // namespace handeye

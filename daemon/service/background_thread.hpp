@@ -3,12 +3,14 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -50,10 +52,23 @@ class BackgroundThread {
   std::jthread thread_;
 };
 
+void log_failure(std::string_view what, std::string_view why);
+
 /// Whether there is an answer to be had without waiting.
 template <typename T>
 bool is_ready(const std::future<T>& future) {
   return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+/// The answer of a job that is done. Nothing: it threw, which the log says of `what`.
+template <typename T>
+std::optional<T> outcome_of(std::future<T>& future, std::string_view what) {
+  try {
+    return future.get();
+  } catch (const std::exception& error) {
+    log_failure(what, error.what());
+    return std::nullopt;
+  }
 }
 
 }  // namespace handeye

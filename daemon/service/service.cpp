@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/service.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <handeye/version.hpp>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
+#include "daemon/service/calibration_in_use.hpp"
 #include "daemon/service/camera_factory.hpp"
 #include "daemon/service/status_message.hpp"
 #include "daemon/session/result_message.hpp"
-#include "drivers/recording/recording.hpp"
-#include "protocol/exit_codes.hpp"
 
 namespace handeye {
 namespace {
@@ -22,58 +19,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds kStatusPeriod{200};
 constexpr double kTrackerSilentAfter_s = 1;
 constexpr double kCameraSilentAfter_s = 1;
-// Whatever a calibration found: the watch is not to trust features more than that.
-constexpr double kLeastImageNoise_px = 0.4;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return 1e-9 * static_cast<double>(to_ns - from_ns);
 }
 
-VisionThread::Options vision_options(const Config& config, const CameraFiles& files,
-                                     const Channels& channels) {
-  VisionThread::Options options;
-  options.mask = files.mask;
-  // A camera on LCM is on FRAME already; never publish there beside it.
-  if (config.camera.driver != Config::Camera::Driver::kLcm) options.frame_channel = channels.frame;
-  return options;
-}
-
-SolverThread::Options solver_options(const Config& config, const CameraFiles& files) {
-  SolverThread::Options options{
-      .camera = files.model, .intrinsics = config.camera.intrinsics_mode, .noise = {}};
-  options.noise.hand_rotation_rad = rad_from_deg(config.tracker.noise_rotation_deg);
-  options.noise.hand_translation_mm = config.tracker.noise_translation_mm;
-  options.hand_noise = config.tracker.noise;
-  options.min_duration_s = config.calibration.min_duration_s;
-  return options;
-}
-
-PosePublisherOptions pose_options(const Config::CameraPose& config) {
-  const auto ns = [](double duration_ms) { return static_cast<std::int64_t>(1e6 * duration_ms); };
-  return {.wait_ns = ns(config.wait_ms), .predict_ns = ns(config.predict_ms)};
-}
-
 }  // namespace
-
-CameraFiles read_camera_files(const Config::Camera& config) {
-  CameraFiles files;
-  if (config.intrinsics.empty()) {
-    files.model.width = config.width;
-    files.model.height = config.height;
-  } else {
-    files.model = read_camera_model(config.intrinsics);
-  }
-  if (!config.mask.empty()) files.mask = read_mask(config.mask);
-  const cv::Size size(files.model.width, files.model.height);
-  if (!files.mask.empty() && files.mask.size() != size) {
-    const std::string camera =
-        config.intrinsics.empty() ? "the camera" : config.intrinsics.string();
-    throw InputError(fmt::format("{}: the mask is {}x{}, but {} is for {}x{}", config.mask.string(),
-                                 files.mask.cols, files.mask.rows, camera, size.width,
-                                 size.height));
-  }
-  return files;
-}
 
 Service::Service(const Config& config)
     : config_(config),
@@ -172,8 +123,9 @@ void Service::start_calibration() {
       start.request_id, start.body_id, start.board ? to_string(*start.board) : "no board",
       start.wanted.rotation_deg, start.wanted.translation_mm, start.max_duration_s);
   collecting_since_ns_ = monotonic_ns();
-  tracker_.begin_collecting(start.body_id);
-  solver_.begin(start, vision_.begin_collecting(start.board));
+  const std::uint64_t calibration = vision_.begin_collecting(start.board);
+  tracker_.begin_collecting(start.body_id, calibration);
+  solver_.begin(start, calibration);
 }
 
 void Service::on_solver_events() {
@@ -205,28 +157,9 @@ void Service::end_collecting() {
 }
 
 void Service::activate(const CalibrationResult& result) {
-  const SampleNoise noise = result.hand_noise.value_or(SampleNoise{
-      config_.tracker.noise_rotation_deg, config_.tracker.noise_translation_mm, "given"});
-  tracker_.use({.request_id = result.request_id,
-                .accepted_ns = monotonic_ns(),
-                .body_id = result.body_id,
-                .hand_from_eye = result.solution.hand_from_eye,
-                .covariance = result.covariance,
-                .time_offset_ns = static_cast<std::int64_t>(1e9 * result.time_offset_s.value_or(0)),
-                .time_offset_sigma_s = result.time_offset_sigma_s.value_or(0),
-                .hand_noise = {.rotation_rad = rad_from_deg(noise.rotation_deg),
-                               .translation_mm = noise.translation_mm}});
+  tracker_.use(active_calibration(result, config_.tracker, monotonic_ns()));
   calibrated_request_id_ = result.request_id;
-  watch_.watch(
-      result.request_id,
-      {.hand_from_eye = result.solution.hand_from_eye,
-       .covariance = result.covariance,
-       .time_offset_s = result.time_offset_s.value_or(0),
-       .camera = result.camera,
-       .hand_noise = {rad_from_deg(
-                          std::max(noise.rotation_deg, config_.tracker.noise_rotation_deg)),
-                      std::max(noise.translation_mm, config_.tracker.noise_translation_mm)},
-       .image_noise_px = std::max(kLeastImageNoise_px, result.image_noise_px)});
+  watch_.watch(result.request_id, watched_calibration(result, config_.tracker));
   vision_.begin_watching();
 }
 

@@ -11,6 +11,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/service/camera_thread.hpp"
 #include "daemon/service/event_loop.hpp"
+#include "daemon/service/service_options.hpp"
 #include "daemon/service/solver_thread.hpp"
 #include "daemon/service/tracker_thread.hpp"
 #include "daemon/service/vision_thread.hpp"
@@ -20,15 +21,6 @@
 #include "protocol/channels.hpp"
 
 namespace handeye {
-
-/// What the configuration's files say about the camera, read and checked.
-struct CameraFiles {
-  CameraModel model;
-  cv::Mat mask;  ///< empty: found in the images
-};
-
-/// Reads them. Throws InputError: unreadable, unusable, or of different sizes.
-CameraFiles read_camera_files(const Config::Camera& config);
 
 /// The daemon: devices and solver in threads of their own, and this, the main thread, which talks
 /// to clients: takes requests, reports status five times a second, publishes results. Devices may

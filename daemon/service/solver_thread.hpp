@@ -9,6 +9,7 @@
 #include "daemon/service/background_thread.hpp"
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/exchange.hpp"
+#include "daemon/service/hand_item.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/service/wake_up.hpp"
 #include "daemon/session/calibration.hpp"
@@ -17,9 +18,12 @@
 namespace handeye {
 
 /// Runs the calibrations: takes samples of the hand and tracked frames, hears requests, watches
-/// sigma and the clock. What is slow, provisional answers, attempts at a final one and the final
-/// one itself, is solved on threads behind it, from snapshots: frames are taken in meanwhile, and a
-/// cancel or finish is acted on within some ten milliseconds whatever is being solved.
+/// sigma and the clock. What is slow is solved on threads behind it: provisional answers and
+/// attempts at a final one from snapshots, so frames are taken in meanwhile; the global adjustment
+/// takes the calibration itself away, and frames wait for it. Requests are heard all the time, and
+/// within some 50 ms: a cancel is answered then, whatever is being solved; a finish is too, with
+/// Solving, and the final answer begins when an adjustment that is under way is done. Taking in a
+/// frame can last longer than that: see Calibration::add_frame().
 class SolverThread {
  public:
   struct Options {
@@ -30,16 +34,17 @@ class SolverThread {
     double min_duration_s{8};
   };
 
-  /// What the main thread is told, in order. `Solving`: the last frame has been taken.
+  /// What the main thread is told, in order. `Solving`, once, or never: no more frames are wanted,
+  /// those tracked by then go in yet.
   struct Solving {};
   using Event = std::variant<Solving, CalibrationResult>;
 
-  SolverThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
+  SolverThread(BoundedQueue<HandItem>& hand, Exchange<TrackedItem>& tracked,
                const Options& options);
 
   void start();
 
-  /// From the main thread. `calibration` as VisionThread::begin_collecting() returned it.
+  /// From the main thread. `calibration`: the number that its samples and frames carry.
   void begin(const StartOptions& options, std::uint64_t calibration);
   void finish() { commands_.push({Command::Kind::kFinish, {}, 0}); }
   void cancel() { commands_.push({Command::Kind::kCancel, {}, 0}); }
@@ -58,21 +63,24 @@ class SolverThread {
   struct Running;
 
   void run(const std::stop_token& stop);
+  void forget_leftovers();
   void calibrate(const Command& begin, const std::stop_token& stop);
-  bool take_in(Running& running, std::chrono::milliseconds wait);
+  void take_in(Running& running, std::chrono::milliseconds wait);
   void take_rest(Running& running, const std::stop_token& stop);
   void hear(Running& running);
   void tell_progress(Running& running);
+  void tell_solving(Running& running);
   void begin_background_work(Running& running);
   bool end_background_work(Running& running);
   void end_provisional(Running& running);
+  void end_adjustment(Running& running);
   bool end_attempt(Running& running);
   void conclude(Running& running, const std::stop_token& stop);
-  std::optional<SolvedCalibration> solve_finally(Running& running, const std::stop_token& stop);
+  std::optional<CalibrationResult> solve_finally(Running& running, const std::stop_token& stop);
   void post_result(const Running& running, CalibrationResult result);
   void post(Event event);
 
-  BoundedQueue<HandSample>& hand_samples_;
+  BoundedQueue<HandItem>& hand_;
   Exchange<TrackedItem>& tracked_;
   Options options_;
   BoundedQueue<Command> commands_;

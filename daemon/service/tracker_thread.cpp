@@ -50,7 +50,7 @@ TrackerThread::TrackerThread(const Config::Tracker& config,
       frame_publisher_(bus, channels.tracker),
       datagram_publisher_(bus, channels.datagram),
       pose_publisher_(bus, channels.camera_pose, camera_poses),
-      wanted_body_id_(config.body_id),
+      collecting_(Collecting{0, config.body_id}),
       hand_samples_(kHandSamples),
       watched_hand_(kWatchedHand),
       calibrations_(4),
@@ -64,9 +64,12 @@ void TrackerThread::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-void TrackerThread::begin_collecting(int body_id) {
-  wanted_body_id_ = body_id;
-  collecting_ = true;
+void TrackerThread::begin_collecting(int body_id, std::uint64_t calibration) {
+  collecting_ = Collecting{static_cast<std::uint32_t>(calibration), body_id};
+}
+
+void TrackerThread::end_collecting() {
+  collecting_ = Collecting{0, collecting_.load().body_id};
 }
 
 void TrackerThread::run(const std::stop_token& stop) {
@@ -102,7 +105,8 @@ void TrackerThread::frame_taken(FrameStamp stamp) {
 
 void TrackerThread::take(const Datagram& datagram) {
   publish_datagram(datagram);
-  hand_stream_.set_body_id(wanted_body_id_);
+  const Collecting collecting = collecting_;
+  hand_stream_.set_body_id(collecting.body_id);
   const auto sample = hand_stream_.take(datagram);
   if (!sample) {
     count_datagram();
@@ -112,7 +116,7 @@ void TrackerThread::take(const Datagram& datagram) {
   count_datagram();
   report_clock();
   publish_frame(datagram, *sample);
-  distribute(*sample);
+  distribute(*sample, collecting.calibration);
 }
 
 void TrackerThread::report_clock() {
@@ -170,8 +174,8 @@ void TrackerThread::publish_datagram(const Datagram& datagram) {
   datagram_publisher_.publish(datagram_message_);
 }
 
-void TrackerThread::distribute(const HandSample& sample) {
-  if (collecting_) hand_samples_.push(sample);
+void TrackerThread::distribute(const HandSample& sample, std::uint32_t collecting_for) {
+  if (collecting_for != 0) hand_samples_.push({collecting_for, sample});
   const auto& calibration = pose_publisher_.calibration();
   if (!calibration) return;
   // Another body may be collected meanwhile than the one that is calibrated.

@@ -14,6 +14,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/device_health.hpp"
+#include "daemon/service/hand_item.hpp"
 #include "daemon/service/pose_publisher.hpp"
 #include "daemon/service/wake_up.hpp"
 #include "daemon/session/hand_stream.hpp"
@@ -35,9 +36,9 @@ class TrackerThread {
 
   void start();
 
-  /// From the main thread: samples of this body go to hand_samples() from now on.
-  void begin_collecting(int body_id);
-  void end_collecting() { collecting_ = false; }
+  /// From the main thread: samples of this body go to hand_samples() from now on, with that number.
+  void begin_collecting(int body_id, std::uint64_t calibration);
+  void end_collecting();
   /// From the main thread: publish CAMERA_POSE with this calibration.
   void use(const ActiveCalibration& calibration) { calibrations_.push(calibration); }
   /// From one thread: whether that calibration still holds. The flags of CAMERA_POSE follow it.
@@ -48,7 +49,7 @@ class TrackerThread {
   void frame_taken(FrameStamp stamp);
 
   /// The solver's end of the samples of the hand.
-  BoundedQueue<HandSample>& hand_samples() { return hand_samples_; }
+  BoundedQueue<HandItem>& hand_samples() { return hand_samples_; }
   /// The watch's end: of the calibrated body.
   BoundedQueue<HandSample>& watched_hand() { return watched_hand_; }
   const DeviceHealth& health() const { return health_; }
@@ -57,6 +58,13 @@ class TrackerThread {
   std::uint16_t port() const { return receiver_.port(); }
 
  private:
+  /// What is wanted of the tracker, in one piece: no body's samples under another calibration.
+  struct Collecting {
+    std::uint32_t calibration{0};  ///< 0: none
+    std::int32_t body_id{0};
+  };
+  static_assert(std::atomic<Collecting>::is_always_lock_free);
+
   void run(const std::stop_token& stop);
   void wait_for_work();
   void take(const Datagram& datagram);
@@ -65,7 +73,7 @@ class TrackerThread {
   static body_t body_message(const dtrack::Body& body);
   void publish_frame(const Datagram& datagram, const HandSample& sample);
   void publish_datagram(const Datagram& datagram);
-  void distribute(const HandSample& sample);
+  void distribute(const HandSample& sample, std::uint32_t collecting_for);
 
   Config::Tracker config_;
   dtrack::Receiver receiver_;
@@ -80,12 +88,11 @@ class TrackerThread {
   DeviceHealth health_;
   std::int64_t clock_reported_ns_{0};
   std::int64_t jumps_{0};  ///< of the tracker's clock, as last said
-  std::atomic<bool> collecting_{false};
-  std::atomic<int> wanted_body_id_;
+  std::atomic<Collecting> collecting_;
   std::atomic<std::int64_t> record_until_ns_{0};
   std::atomic<std::uint64_t> tracked_bodies_{
       0};  ///< bit i: body i was tracked in the last datagram
-  BoundedQueue<HandSample> hand_samples_;
+  BoundedQueue<HandItem> hand_samples_;
   BoundedQueue<HandSample> watched_hand_;
   BoundedQueue<ActiveCalibration> calibrations_;
   BoundedQueue<WatchWord> watch_words_;

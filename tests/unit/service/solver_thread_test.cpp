@@ -28,7 +28,7 @@ class LiveSolver {
  public:
   explicit LiveSolver(EyeMotion motion = free_motion)
       : scene_(std::move(motion), kPoints),
-        solver_(hand_samples_, tracked_,
+        solver_(hand_, tracked_,
                 {.camera = kCamera,
                  .intrinsics = IntrinsicsMode::kFixed,
                  .noise = noise(),
@@ -41,12 +41,22 @@ class LiveSolver {
                   ++calibration_);
   }
 
+  /// Of a hand that holds still, as if it had been pushed before the calibration that begins next.
+  void feed_stale_hand(double duration_s) {
+    const auto samples = static_cast<std::int64_t>(duration_s * kTrackerRate_hz);
+    for (std::int64_t i = 0; i < samples; ++i) {
+      HandSample sample = scene_.hand(samples_ + i);
+      sample.room_from_hand = scene_.hand(samples_).room_from_hand;
+      hand_.push({calibration_, sample});
+    }
+  }
+
   /// As much more of both streams.
   void feed(double duration_s) {
     const double until_s = fed_s_ + duration_s;
     for (; fed_s_ < until_s; fed_s_ = static_cast<double>(frames_) / kFrameRate_hz) {
       while (static_cast<double>(samples_) / kTrackerRate_hz < fed_s_ + 0.1) {
-        hand_samples_.push(scene_.hand(samples_++));
+        hand_.push({calibration_, scene_.hand(samples_++)});
       }
       TrackedItem* item = tracked_.acquire();
       if (item == nullptr) {
@@ -79,10 +89,24 @@ class LiveSolver {
 
   bool has_result() {
     while (auto event = solver_.next_event()) {
-      if (auto* result = std::get_if<CalibrationResult>(&*event)) result_ = std::move(*result);
+      if (auto* result = std::get_if<CalibrationResult>(&*event)) {
+        result_ = std::move(*result);
+      } else {
+        ++times_solving_;
+      }
     }
     return result_.has_value();
   }
+
+  /// Until it said so.
+  bool is_solving() {
+    const auto deadline = Clock::now() + kPatience;
+    while (Clock::now() < deadline && times_solving_ == 0 && !has_result()) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return times_solving_ > 0;
+  }
+  int times_solving() const { return times_solving_; }
 
   SolverThread& solver() { return solver_; }
   std::int64_t frames() const { return frames_; }
@@ -101,7 +125,8 @@ class LiveSolver {
   std::int64_t frames_{0};
   std::uint64_t calibration_{0};
   std::optional<CalibrationResult> result_;
-  BoundedQueue<HandSample> hand_samples_{8192};
+  int times_solving_{0};
+  BoundedQueue<HandItem> hand_{8192};
   Exchange<TrackedItem> tracked_{64};
   SolverThread solver_;
 };
@@ -153,6 +178,42 @@ TEST(SolverThread, FinishTakesEveryFrameSoFarWhateverIsBeingSolved) {
   EXPECT_EQ(result->frames.received, live.frames());
   EXPECT_EQ(result->verdict, Verdict::kRefused);
   EXPECT_TRUE(result->has_estimate);
+  EXPECT_EQ(live.times_solving(), 1);
+}
+
+TEST(SolverThread, FinishTakesEveryFrameSoFarWhileAnAttemptIsUnderWay) {
+  // The attempt may be done before it is asked to finish, then that ends the calibration.
+  bool took_all = false;
+  for (std::int64_t trial = 0; trial < 8 && !took_all; ++trial) {
+    LiveSolver live;
+    live.begin(20 + trial, kWithinReach);
+    // With the provisional answer that shows it an attempt begins.
+    ASSERT_TRUE(live.feed_until([&] {
+      const auto sigma = live.solver().progress().provisional.sigma;
+      return live.has_result() || (sigma && sigma->rotation_deg < kWithinReach.rotation_deg &&
+                                   sigma->translation_mm < kWithinReach.translation_mm);
+    }));
+    if (live.has_result()) continue;
+    live.solver().finish();
+    const auto result = live.result();
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->verdict, Verdict::kAccepted) << reason_word(result->reason);
+    took_all = result->frames.received == live.frames();
+    EXPECT_TRUE(took_all || live.times_solving() == 0) << "asked in time, but not all went in";
+    EXPECT_LE(live.times_solving(), 1);
+  }
+  EXPECT_TRUE(took_all);
+}
+
+TEST(SolverThread, DropsWhatTheCalibrationBeforeLeftBehind) {
+  LiveSolver live;
+  live.feed_stale_hand(20);
+  live.begin(8, kWithinReach);
+  ASSERT_TRUE(live.feed_until([&] { return live.has_result(); }));
+  const CalibrationResult result = *live.result();
+  EXPECT_EQ(result.verdict, Verdict::kAccepted) << reason_word(result.reason);
+  expect_true(result.solution.hand_from_eye,
+              {result.sigma_rotation_deg, result.sigma_translation_mm});
 }
 
 TEST(SolverThread, RefusesAtTheTimeLimitWithTheReason) {
@@ -170,6 +231,7 @@ TEST(SolverThread, CancelDropsTheAnswerThatIsBeingSolvedAndTheNextCalibrationIsI
   live.begin(4, kOutOfReach);
   live.feed(6);
   live.solver().finish();
+  ASSERT_TRUE(live.is_solving());
   live.solver().cancel();
   const auto cancelled = live.result();
   ASSERT_TRUE(cancelled);
@@ -186,10 +248,10 @@ TEST(SolverThread, CancelDropsTheAnswerThatIsBeingSolvedAndTheNextCalibrationIsI
 
 TEST(SolverThread, StopsWhileItSolves) {
   LiveSolver live;
-  live.begin(6, kWithinReach);
+  live.begin(6, kOutOfReach);
   live.feed(6);
   live.solver().finish();
-  std::this_thread::sleep_for(milliseconds(100));
+  ASSERT_TRUE(live.is_solving());
 }
 
 TEST(BackgroundThread, RunsOneJobAfterTheOther) {
@@ -212,6 +274,28 @@ TEST(BackgroundThread, EndsTheRunningJobWhoseAnswerNobodyWants) {
     while (!begun) std::this_thread::sleep_for(milliseconds(1));
   }
   EXPECT_TRUE(ended);
+}
+
+TEST(BackgroundThread, DoesNotBeginAJobThatWaitsWhenItEnds) {
+  // The answer is there before the job and what it owns have gone: the next one has to wait.
+  struct SlowToGo {
+    ~SlowToGo() { std::this_thread::sleep_for(milliseconds(100)); }
+  };
+  std::atomic<bool> begun{false};
+  {
+    BackgroundThread thread;
+    thread.run([owned = std::make_shared<SlowToGo>()] { return owned != nullptr; }).wait();
+    static_cast<void>(thread.run([&] { begun = true; }));
+  }
+  EXPECT_FALSE(begun);
+}
+
+TEST(BackgroundThread, AFailedJobHasNoOutcome) {
+  BackgroundThread thread;
+  auto failing = thread.run([]() -> int { throw std::runtime_error("no"); });
+  EXPECT_FALSE(outcome_of(failing, "this").has_value());
+  auto working = thread.run([] { return 3; });
+  EXPECT_EQ(outcome_of(working, "this"), 3);
 }
 
 TEST(BackgroundThread, HandsExceptionsOn) {

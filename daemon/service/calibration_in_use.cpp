@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service/calibration_in_use.hpp"
+
+#include <algorithm>
+
+namespace handeye {
+namespace {
+
+constexpr double kLeastImageNoise_px = 0.4;
+
+SampleNoise hand_noise(const CalibrationResult& result, const Config::Tracker& tracker) {
+  return result.hand_noise.value_or(
+      SampleNoise{tracker.noise_rotation_deg, tracker.noise_translation_mm, "given"});
+}
+
+}  // namespace
+
+ActiveCalibration active_calibration(const CalibrationResult& result,
+                                     const Config::Tracker& tracker, std::int64_t accepted_ns) {
+  const SampleNoise noise = hand_noise(result, tracker);
+  return {.request_id = result.request_id,
+          .accepted_ns = accepted_ns,
+          .body_id = result.body_id,
+          .hand_from_eye = result.solution.hand_from_eye,
+          .covariance = result.covariance,
+          .time_offset_ns = static_cast<std::int64_t>(1e9 * result.time_offset_s.value_or(0)),
+          .time_offset_sigma_s = result.time_offset_sigma_s.value_or(0),
+          .hand_noise = {.rotation_rad = rad_from_deg(noise.rotation_deg),
+                         .translation_mm = noise.translation_mm}};
+}
+
+WatchedCalibration watched_calibration(const CalibrationResult& result,
+                                       const Config::Tracker& tracker) {
+  const SampleNoise noise = hand_noise(result, tracker);
+  return {.hand_from_eye = result.solution.hand_from_eye,
+          .covariance = result.covariance,
+          .time_offset_s = result.time_offset_s.value_or(0),
+          .camera = result.camera,
+          .hand_noise = {rad_from_deg(std::max(noise.rotation_deg, tracker.noise_rotation_deg)),
+                         std::max(noise.translation_mm, tracker.noise_translation_mm)},
+          .image_noise_px = std::max(kLeastImageNoise_px, result.image_noise_px)};
+}
+
+}  // namespace handeye

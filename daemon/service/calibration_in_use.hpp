@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "daemon/config/config.hpp"
+#include "daemon/service/pose_publisher.hpp"
+#include "daemon/session/calibration_watch.hpp"
+#include "daemon/session/result.hpp"
+
+namespace handeye {
+
+// An accepted result, as those need it who use it from then on. Where it does not tell the hand's
+// noise, the configuration does.
+
+/// For CAMERA_POSE. `accepted_ns`: CLOCK_MONOTONIC.
+ActiveCalibration active_calibration(const CalibrationResult& result,
+                                     const Config::Tracker& tracker, std::int64_t accepted_ns);
+
+/// For the watch, which trusts neither hand nor features more than is plausible, whatever the
+/// calibration found.
+WatchedCalibration watched_calibration(const CalibrationResult& result,
+                                       const Config::Tracker& tracker);
+
+}  // namespace handeye

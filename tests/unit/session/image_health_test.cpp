@@ -70,12 +70,12 @@ TEST(Guidance, SaysWhatAilsThePictureBeforeWhatIsInIt) {
     situation.images = condition;
     return guidance_for(situation);
   };
-  EXPECT_NE(said(ImageCondition::kDark).find("too dark"), std::string::npos);
-  EXPECT_NE(said(ImageCondition::kFrozen).find("frozen"), std::string::npos);
-  EXPECT_NE(said(ImageCondition::kBright).find("too bright"), std::string::npos);
-  EXPECT_NE(said(ImageCondition::kUnusable).find("cannot be used"), std::string::npos);
-  EXPECT_NE(said(ImageCondition::kBlurred).find("slower"), std::string::npos);
-  EXPECT_NE(said(ImageCondition::kGood).find("tilt"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kDark).words.find("too dark"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kFrozen).words.find("frozen"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kBright).words.find("too bright"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kUnusable).words.find("cannot be used"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kBlurred).words.find("slower"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kGood).words.find("tilt"), std::string::npos);
   situation.hand_hidden = true;
   EXPECT_NE(said(ImageCondition::kDark).find("hidden"), std::string::npos);
 }

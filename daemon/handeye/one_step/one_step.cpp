@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "daemon/handeye/one_step/hand_term.hpp"
 #include "daemon/handeye/one_step/metric_covariance.hpp"
 #include "daemon/handeye/one_step/metric_problem.hpp"
@@ -24,18 +22,6 @@ bool options_are_usable(const OneStepOptions& options) {
   return lens && good(options.hand_rotation_sigma_rad) && good(options.hand_translation_sigma_mm) &&
          good(options.image_noise_px.value_or(1.0)) && good(options.time_offset_prior_s) &&
          good(options.huber) && good(options.reject);
-}
-
-/// From this sigma of the start's log scale on, its doubt is shared: near a fixed point the minimum
-/// wanders along the scale by more than its curvature says, while the likelihood of the poses has
-/// tried other scales (docs/math.md section 10).
-constexpr double kDoubtedLogScale = 0.01;
-
-/// The first covariance, widened in every direction to the second where that is larger.
-Matrix6d wider(const Matrix6d& first, const Matrix6d& second) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> eigen(second, first);
-  const Matrix6d directions = first * eigen.eigenvectors();
-  return directions * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * directions.transpose();
 }
 
 /// Degrees of freedom of the tracker's residuals.
@@ -124,9 +110,6 @@ std::optional<OneStepResult> one_step(const OneStepProblem& problem,
   MetricProblem metric(*scene, options);
   if (!minimise_with_noise(metric)) return std::nullopt;
   OneStepResult result = describe(problem, metric);
-  if (start.log_scale_sigma > kDoubtedLogScale) {
-    result.covariance = wider(result.covariance, start.covariance);
-  }
   if (!result.covariance.allFinite() || !result.hand_from_eye.matrix().allFinite() ||
       metric.hand_rows().size() < 3) {
     return std::nullopt;

@@ -28,6 +28,7 @@ std::string text_of(const ClockReport& report) {
                              : "the clock jumps; is its time being set?";
   }
   if (report.state == ClockState::kSettling) return "being found";
+  if (report.state == ClockState::kAbsent) return "no time of its own: the arrivals stand for it";
   if (report.backwards > 0) return fmt::format("{} stamps went back", report.backwards);
   return "";
 }
@@ -66,10 +67,12 @@ device_status_t DeviceStatusReporter::report(const DeviceHealth& health, std::in
   }
 
   const std::int64_t last_ns = health.last_ns;
+  if (last_ns == 0) status.clock.text = "nothing has come yet";
   status.age_s = last_ns == 0 ? -1 : 1e-9 * static_cast<double>(now_ns - last_ns);
   if (status.state == device_status_t::STREAMING && status.age_s > silent_after_s_) {
     status.state = device_status_t::SILENT;
     status.text = fmt::format("{}: nothing for {:.1f} s", status.text, status.age_s);
+    status.clock.text = fmt::format("nothing for {:.1f} s, this was before", status.age_s);
   }
   return status;
 }

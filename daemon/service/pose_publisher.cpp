@@ -20,10 +20,10 @@ std::int32_t validity_of(LookupStatus status) {
     case LookupStatus::kHidden:
       return camera_pose_t::TRACKER_HIDDEN;
     case LookupStatus::kGap:
+    case LookupStatus::kTooOld:  // its samples begin only after the frame
       return camera_pose_t::TRACKER_GAP;
     case LookupStatus::kTooNew:
       return camera_pose_t::TRACKER_LATE;
-    case LookupStatus::kTooOld:
     case LookupStatus::kEmpty:
       break;
   }

@@ -70,6 +70,7 @@ TEST(DeviceStatus, CallsADeviceSilentAndBack) {
   EXPECT_NEAR(silent.age_s, 3.8, 0.3);
   EXPECT_EQ(silent.rate_hz, 0);
   EXPECT_THAT(silent.text, testing::HasSubstr("port 5000: nothing for"));
+  EXPECT_THAT(silent.clock.text, testing::HasSubstr("this was before"));
   device.change_rate(60);
   EXPECT_EQ(device.run(1).state, device_status_t::STREAMING);
 }
@@ -103,6 +104,10 @@ TEST(DeviceHealth, TellsWhatIsKnownOfTheClock) {
   DeviceHealth health;
   DeviceStatusReporter reporter(2.0);
   EXPECT_EQ(reporter.report(health, 0).clock.state, clock_status_t::ABSENT);
+  EXPECT_EQ(reporter.report(health, 0).clock.text, "nothing has come yet");
+  health.last_ns = 1'000'000'000;
+  EXPECT_EQ(reporter.report(health, 1'000'000'000).clock.text,
+            "no time of its own: the arrivals stand for it");
   health.reordered = 7;
   health.set_clock({.state = ClockState::kSteady,
                     .drift_ppm = 12.5,

@@ -158,6 +158,15 @@ TEST_F(PosePublisherTest, GapInTheTrackersSamples) {
   expect_invalid(heard_.front(), camera_pose_t::TRACKER_GAP);
 }
 
+TEST_F(PosePublisherTest, SamplesThatBeginAfterTheFrame) {
+  publisher_.use(calibration_);
+  add_hand(32);
+  add_hand(48);
+  add_frame(4);
+  ASSERT_EQ(publish(60).size(), 1U);
+  expect_invalid(heard_.front(), camera_pose_t::TRACKER_GAP);
+}
+
 TEST_F(PosePublisherTest, SampleThatDoesNotComeInTime) {
   publisher_.use(calibration_);
   add_hand(0);

@@ -65,7 +65,9 @@ std::vector<std::string_view> flag_words(std::int32_t flags) {
 
 std::string pose_json_line(const camera_pose_t& pose) {
   const bool valid = pose.validity == camera_pose_t::VALID;
-  nlohmann::ordered_json json{{"timestamp_ns", pose.timestamp_ns},
+  nlohmann::ordered_json json{{"session_id", pose.session_id},
+                              {"seq", pose.seq},
+                              {"timestamp_ns", pose.timestamp_ns},
                               {"frame_seq", pose.frame_seq},
                               {"validity", validity_word(pose.validity)},
                               {"flags", flag_words(pose.flags)},

@@ -20,10 +20,12 @@ std::string colored_device_state(std::int32_t state, const Palette& palette) {
 std::string device_text(std::string_view name, const device_status_t& device,
                         const Palette& palette) {
   const std::string age = device.age_s < 0 ? "never" : fmt::format("{:.2f} s", device.age_s);
-  return fmt::format("{:<9}{}{:>8.1f}{:>10}{:>12}{:>9}{:>8}{:>11}{:>10}  {}\n", name,
+  const std::string reordered =
+      device.reordered > 0 ? fmt::format(", {} came out of order", device.reordered) : "";
+  return fmt::format("{:<9}{}{:>8.1f}{:>10}{:>12}{:>9}{:>8}{:>11}{:>10}  {}{}\n", name,
                      colored_device_state(device.state, palette), device.rate_hz, age,
                      device.received, device.dropped, device.dropped_queue, device.malformed,
-                     device.restarts, printable(device.text));
+                     device.restarts, printable(device.text), reordered);
 }
 
 std::string uptime_text(double seconds) {
@@ -37,7 +39,7 @@ std::string colored_clock_state(std::int32_t state, const Palette& palette) {
   return state == clock_status_t::UNSTABLE ? palette.red(word) : palette.yellow(word);
 }
 
-/// Empty where the device sends no time of its own and there is nothing to say about that.
+/// Empty where the device has shown no time of its own and there is nothing to say about that.
 std::string clock_text(std::string_view name, const clock_status_t& clock, const Palette& palette) {
   const std::string says = printable(clock.text);
   if (clock.state == clock_status_t::ABSENT) {
@@ -49,6 +51,10 @@ std::string clock_text(std::string_view name, const clock_status_t& clock, const
   if (clock.jumps > 0) {
     text +=
         palette.yellow(fmt::format(", jumped {} time{}", clock.jumps, clock.jumps == 1 ? "" : "s"));
+  }
+  if (clock.midnights > 0) {
+    text += fmt::format(", past midnight{}",
+                        clock.midnights == 1 ? "" : fmt::format(" {} times", clock.midnights));
   }
   return text + (says.empty() ? "\n" : fmt::format("  {}\n", says));
 }
@@ -71,6 +77,8 @@ std::string time_offset_text(const status_t& status) {
 }
 
 std::string turned_text(const status_t& status) {
+  // About the camera's axes, so it takes an answer to tell.
+  if (!status.has_estimate) return "turned: not known yet";
   return fmt::format("turned {:.1f} deg up and down, {:.1f} left and right, {:.1f} roll",
                      status.turned_deg[0], status.turned_deg[1], status.turned_deg[2]);
 }
@@ -89,14 +97,7 @@ std::string watch_text(const status_t& status, const Palette& palette) {
       text = fmt::format("{}, {}", palette.green("holds"), age);
       break;
     case status_t::WATCH_BROKEN:
-      text = fmt::format("{}, {}",
-                         palette.red(fmt::format("NO LONGER HOLDS: turned by {:.1f} deg",
-                                                 status.watch_deviation_deg)),
-                         age);
-      break;
-    case status_t::WATCH_DOUBTFUL:
-      text = fmt::format("{}: seems turned by {:.1f} deg, {}", palette.yellow("doubtful"),
-                         status.watch_deviation_deg, age);
+      text = fmt::format("{}, {}", palette.red("NO LONGER HOLDS"), age);
       break;
     default:
       text = fmt::format("{}, {}", palette.yellow(watch_state_word(status.watch_state)), age);

@@ -167,6 +167,7 @@ TEST(StatusText, ShowsTheAnswerAsItStands) {
   early.time_offset_sigma_s = -1;
   EXPECT_THAT(status_text(early, kPlain), HasSubstr("no estimate yet"));
   EXPECT_THAT(status_text(early, kPlain), HasSubstr("time offset not known yet"));
+  EXPECT_THAT(status_text(early, kPlain), HasSubstr("turned: not known yet"));
 }
 
 TEST(StatusText, ShowsTheDevicesClocks) {
@@ -181,6 +182,14 @@ TEST(StatusText, ShowsTheDevicesClocks) {
       HasSubstr("tracker clock   steady   drift +12.3 ppm, jitter 0.8 ms, holds for 34 s\n"));
   status.tracker.clock.jumps = 2;
   EXPECT_THAT(status_text(status, kPlain), HasSubstr(", jumped 2 times"));
+  EXPECT_THAT(status_text(status, kPlain), Not(HasSubstr("midnight")));
+  EXPECT_THAT(status_text(status, kPlain), Not(HasSubstr("out of order")));
+  status.tracker.clock.midnights = 1;
+  status.tracker.reordered = 12;
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr(", past midnight\n"));
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr(", 12 came out of order\n"));
+  status.camera.clock.text = "nothing has come yet";
+  EXPECT_THAT(status_text(status, kPlain), HasSubstr("camera clock    nothing has come yet\n"));
 }
 
 TEST(StatusText, TellsWhetherTheCalibrationHolds) {
@@ -191,10 +200,19 @@ TEST(StatusText, TellsWhetherTheCalibrationHolds) {
   status.watch_age_s = 3;
   EXPECT_THAT(status_text(status, kPlain), HasSubstr("calibration     holds, checked 3 s ago\n"));
   status.watch_state = status_t::WATCH_BROKEN;
-  status.watch_deviation_deg = 5.1;
+  status.watch_deviation_deg = 0.1;
+  status.watch_text = "the camera head has moved by 4.2 mm: calibrate again";
   EXPECT_THAT(status_text(status, kPlain),
-              HasSubstr("NO LONGER HOLDS: turned by 5.1 deg, checked 3 s ago"));
+              HasSubstr("NO LONGER HOLDS, checked 3 s ago  the camera head has moved by 4.2 mm: "
+                        "calibrate again\n"));
+  EXPECT_THAT(status_text(status, kPlain), Not(HasSubstr("turned by"))) << "it was a shift";
   EXPECT_THAT(status_text(status, kColored), HasSubstr("\033[31;1mNO LONGER HOLDS"));
+  status.watch_state = status_t::WATCH_DOUBTFUL;
+  status.watch_text = "the camera head seems to have moved by 2.0 mm";
+  EXPECT_THAT(
+      status_text(status, kPlain),
+      HasSubstr("doubtful, checked 3 s ago  the camera head seems to have moved by 2.0 mm\n"));
+  status.watch_text.clear();
   status.watch_state = status_t::WATCH_UNCHECKED;
   status.watch_age_s = -1;
   EXPECT_THAT(status_text(status, kPlain), HasSubstr("unchecked, never checked yet"));

@@ -100,9 +100,10 @@ void CalibrationWatch::look() {
 
 /// From the calibration, or, where that leads nowhere, from what contradicted it last.
 std::optional<WatchFit> CalibrationWatch::fit(std::span<const WatchFrame> frames) const {
-  auto fit = watch_fit(frames, calibration_.hand_from_eye, fit_options_);
+  const Pose& calibrated = calibration_.hand_from_eye;
+  auto fit = watch_fit(frames, calibrated, calibrated, fit_options_);
   if (!fit || explains(*fit) || !found_) return fit;
-  const auto other = watch_fit(frames, *found_, fit_options_);
+  const auto other = watch_fit(frames, *found_, calibrated, fit_options_);
   return other && explains(*other) ? other : fit;
 }
 

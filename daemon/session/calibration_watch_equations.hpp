@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "daemon/session/calibration_watch_frame.hpp"
+#include "daemon/session/calibration_watch_unknowns.hpp"
 
 namespace handeye {
 
@@ -18,16 +18,6 @@ inline constexpr double kLargestInverseDepth = 0.3;
 /// Beside residuals on the image plane at focal length 1, with an error of a thousandth.
 inline constexpr double kInverseDepthWeight = 1e-6 / (kInverseDepthSigma * kInverseDepthSigma);
 
-/// What is adjusted: hand_from_eye, the time offset's correction, where the eye was at each frame,
-/// and the points.
-struct WatchUnknowns {
-  Pose start{Pose::Identity()};  ///< hand_from_eye, that it is held near
-  Pose hand_from_eye{Pose::Identity()};
-  double time_offset_correction_s{0};
-  std::vector<Pose> room_from_eye;
-  std::vector<WatchTrack> tracks;
-};
-
 /// Standard deviations that residuals are weighed with.
 struct WatchWeights {
   double image{0.001};          ///< of a ray, per axis, at focal length 1
@@ -37,9 +27,6 @@ struct WatchWeights {
   double hold_rotation_rad{0.3};
   double hold_translation_mm{30.0};
 };
-
-/// Unknowns that all frames share: w [rad] and dt [mm] of hand_from_eye, the time offset [s].
-inline constexpr int kWatchCommon = 7;
 
 /// Gauss-Newton's normal equations with the points eliminated. Of frame k the six unknowns from 6 k
 /// are how much farther its eye goes from where hand and common unknowns put it
@@ -70,25 +57,6 @@ class WatchEquations {
 /// step: together with hand_from_eye the whole scene turns, which points in the room follow badly
 /// to first order.
 void settle_points(const WatchWeights& weights, WatchUnknowns& unknowns);
-
-/// How far the eye of a frame is from where hand and hand_from_eye put it: (w [rad], dc [mm]) in
-/// the room; and what it means.
-struct WatchHandResidual {
-  Vector6d residual{Vector6d::Zero()};
-  Matrix6d information{Matrix6d::Zero()};  ///< inverse covariance, from the hand's noise
-  Eigen::Matrix<double, 6, kWatchCommon> by_common{
-      Eigen::Matrix<double, 6, kWatchCommon>::Zero()};  ///< of where the eye is put
-};
-WatchHandResidual watch_hand_residual(const WatchFrame& frame, const Pose& room_from_eye,
-                                      const WatchUnknowns& at);
-
-/// Where hand and common unknowns put the eye of a frame.
-Pose put_eye(const WatchFrame& frame, const WatchUnknowns& at);
-
-/// Goes over to the common unknowns of `common`: the eyes stay as far from where they are put as
-/// they were, and go `farther` by six of each; the points go with them.
-void carry_eyes(std::span<const WatchFrame> frames, const WatchUnknowns& common,
-                const Eigen::VectorXd& farther, WatchUnknowns& unknowns);
 
 /// A point's ray in an eye. Nothing: not before it.
 std::optional<Eigen::Vector2d> watch_ray(const WatchTrack& track, const Pose& room_from_eye);

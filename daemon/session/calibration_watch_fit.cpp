@@ -23,7 +23,9 @@ constexpr double kConverged = 0.05;
 constexpr double kWild = 3.0;
 /// What a fit without the calibration gains by chance; more is to be looked at closely.
 constexpr double kUsualGain = 20.0;
-constexpr int kClosely = 3;  ///< times the iterations
+constexpr int kMostClosely = 30;  ///< iterations
+/// A gain that no further iterations with the calibration held would take away.
+constexpr double kBeyondReach = 2000.0;
 /// What the motion does not tell stays about where it started.
 constexpr double kFree_rad = 0.3;
 constexpr double kFree_mm = 30.0;
@@ -127,17 +129,18 @@ ImageResiduals image_residuals(const WatchUnknowns& at, const WatchWeights& weig
   return found;
 }
 
-/// The cost with hand_from_eye held, found from what explains the frames best without: where the
-/// calibration can explain the same points and eyes, it is not to blame.
-Descent hold_again(std::span<const WatchFrame> frames, const WatchWeights& held, int most,
-                   const WatchUnknowns& free, WatchFit& fit) {
-  WatchUnknowns at = free;
-  WatchUnknowns common{.hand_from_eye = at.start,
-                       .time_offset_correction_s = at.time_offset_correction_s};
+/// The cost with hand_from_eye held near the calibration, found from what explains the frames best
+/// without: where the calibration can explain the same points and eyes, it is not to blame.
+Descent hold_again(std::span<const WatchFrame> frames, const WatchWeights& held,
+                   const Pose& calibrated, WatchUnknowns at, WatchFit& fit) {
+  const WatchUnknowns common{.hand_from_eye = calibrated,
+                             .time_offset_correction_s = at.time_offset_correction_s};
   const auto size = static_cast<Eigen::Index>(6 * frames.size());
   carry_eyes(frames, common, Eigen::VectorXd::Zero(size), at);
-  const Descent descent = minimise(frames, held, most, at);
+  at.start = calibrated;
+  const Descent descent = minimise(frames, held, kMostClosely, at);
   fit.held_cost = watch_cost(frames, at, held);
+  fit.iterations += descent.iterations;
   return descent;
 }
 
@@ -175,34 +178,35 @@ bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
 }  // namespace
 
 std::optional<WatchFit> watch_fit(std::span<const WatchFrame> frames, const Pose& start,
-                                  const WatchFitOptions& options) {
+                                  const Pose& calibrated, const WatchFitOptions& options) {
   std::vector<WatchTrack> tracks = watch_tracks(frames, options.min_sights);
   if (static_cast<int>(tracks.size()) < options.min_tracks) return std::nullopt;
   WatchUnknowns at = begin_at(frames, start, std::move(tracks));
-  const WatchWeights weights{.image = options.image_noise,
-                             .robust_image = kWideBend * options.image_noise,
-                             .time_offset_s = options.time_offset_s,
-                             .hold_rotation_rad = options.held_rotation_rad,
-                             .hold_translation_mm = options.held_translation_mm};
-  WatchWeights held = weights;
+  WatchWeights held{.image = options.image_noise,
+                    .robust_image = kWideBend * options.image_noise,
+                    .time_offset_s = options.time_offset_s,
+                    .hold_rotation_rad = options.held_rotation_rad,
+                    .hold_translation_mm = options.held_translation_mm};
   WatchFit fit;
   fit.iterations = minimise(frames, held, options.max_iterations / 2, at).iterations;
   leave_out_wild_tracks(options.image_noise, at);
   held.robust_image = kBend * options.image_noise;
   fit.iterations += minimise(frames, held, options.max_iterations, at).iterations;
   fit.held_cost = watch_cost(frames, at, held);
+
   WatchWeights free = held;
   free.hold_rotation_rad = kFree_rad;
   free.hold_translation_mm = kFree_mm;
   Descent descent = minimise(frames, free, 2 * options.max_iterations, at);
   fit.iterations += descent.iterations;
-  if (2.0 * (fit.held_cost - watch_cost(frames, at, free)) > kUsualGain) {
+  const double gain = 2.0 * (fit.held_cost - watch_cost(frames, at, free));
+  if (gain > kUsualGain || !start.isApprox(calibrated)) {
     leave_out_wild_tracks(options.image_noise, at);
-    descent = minimise(frames, free, kClosely * options.max_iterations, at);
+    descent = minimise(frames, free, kMostClosely, at);
     fit.iterations += descent.iterations;
-    const Descent reconciled = hold_again(frames, held, kClosely * options.max_iterations, at, fit);
-    fit.iterations += reconciled.iterations;
-    descent.converged &= reconciled.converged;
+    const Descent again = hold_again(frames, held, calibrated, at, fit);
+    const double left = 2.0 * (fit.held_cost - watch_cost(frames, at, free));
+    descent.converged &= again.converged || left > kBeyondReach;
   }
   fit.cost = watch_cost(frames, at, free);
   fit.converged = descent.converged;
@@ -215,7 +219,7 @@ bool explains(const WatchFit& fit) {
          fit.outliers < kMostOutliers;
 }
 
-std::optional<WatchFit> watch_search(std::span<const WatchFrame> frames, const Pose& start,
+std::optional<WatchFit> watch_search(std::span<const WatchFrame> frames, const Pose& calibrated,
                                      const WatchFitOptions& options) {
   std::vector<WatchFrame> some;
   const std::size_t count = std::min(frames.size(), kSearchFrames);
@@ -226,13 +230,13 @@ std::optional<WatchFit> watch_search(std::span<const WatchFrame> frames, const P
   quick.held_translation_mm = kFree_mm;
   std::optional<WatchFit> best;
   for (double angle = 0; angle < 2.0 * kPi - 0.1; angle += kSearchStep_rad) {
-    Pose turned = start;
-    turned.linear() = start.linear() * exp_so3({0.0, 0.0, angle});
-    const auto fit = watch_fit(some, turned, quick);
+    Pose turned = calibrated;
+    turned.linear() = calibrated.linear() * exp_so3({0.0, 0.0, angle});
+    const auto fit = watch_fit(some, turned, turned, quick);
     if (fit && (!best || fit->cost < best->cost)) best = fit;
   }
   if (!best) return std::nullopt;
-  return watch_fit(frames, best->hand_from_eye, options);
+  return watch_fit(frames, best->hand_from_eye, calibrated, options);
 }
 
 }  // namespace handeye

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the watch over a calibration does: watch_table [SEEDS [MINUTES]].
-// Unchanged heads for MINUTES each, then heads that were turned or moved, over SEEDS seeds.
+// How the watch over a calibration does: watch_table [SEEDS [MINUTES [FIRST_SEED [SCENE...]]]].
+// Heads that were turned or moved, then unchanged ones for MINUTES each, over SEEDS seeds; of all
+// scenes, or those whose name begins with one of the words.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -42,12 +44,12 @@ const std::array<Unchanged, 6> kUnchanged{{
      [](WatchSceneOptions& o) { o.hand_slow_deg = 0.06, o.hand_slow_mm = 0.15; }},
 }};
 
-void watch_unchanged(const Unchanged& scene, int seeds, double minutes) {
+void watch_unchanged(const Unchanged& scene, unsigned first, unsigned seeds, double minutes) {
   int doubtful = 0, broken = 0;
   double holding_s = 0, all_s = 0, looks = 0, largest_deg = 0;
   const double began_s = now_s();
-  for (int seed = 0; seed < seeds; ++seed) {
-    WatchSceneOptions options{.seed = static_cast<unsigned>(seed)};
+  for (unsigned seed = first; seed < first + seeds; ++seed) {
+    WatchSceneOptions options{.seed = seed};
     scene.apply(options);
     WatchScene world(options);
     CalibrationWatch watch(world.calibration());
@@ -79,14 +81,14 @@ struct Changed {
 };
 
 void watch_changed(const Changed& change, std::vector<MotionKind> motions, std::string_view how,
-                   int seeds) {
+                   unsigned first, unsigned seeds) {
   std::vector<double> delays_s;
   int never = 0, early = 0;
   const double began_s = now_s();
-  for (int seed = 0; seed < seeds; ++seed) {
-    WatchSceneOptions options{.seed = static_cast<unsigned>(1000 + seed)};
+  for (unsigned seed = first; seed < first + seeds; ++seed) {
+    WatchSceneOptions options{.seed = seed};
     options.motions = motions;
-    options.turned_at_s = 20.0 + 0.37 * seed;
+    options.turned_at_s = 20.0 + 0.37 * (seed - first);
     options.turn_deg = change.turn_deg;
     options.shift_mm = change.shift_mm;
     WatchScene world(options);
@@ -116,8 +118,14 @@ void watch_changed(const Changed& change, std::vector<MotionKind> motions, std::
 int main(int argc, char** argv) {
   using namespace handeye::test;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const int seeds = argc > 1 ? std::atoi(argv[1]) : 20;
+  const auto seeds = static_cast<unsigned>(argc > 1 ? std::atoi(argv[1]) : 20);
   const double minutes = argc > 2 ? std::atof(argv[2]) : 30.0;
+  const auto first = static_cast<unsigned>(argc > 3 ? std::atoi(argv[3]) : 1000);
+  const std::span<char*> names(argv + std::min(argc, 4), argv + argc);
+  const auto wanted = [&](std::string_view scene) {
+    return names.empty() ||
+           std::ranges::any_of(names, [&](const char* name) { return scene.starts_with(name); });
+  };
   using Eigen::Vector3d;
   const std::vector<Changed> changes{
       {"roll 5 deg", {0, 0, 5}, {0, 0, 0}},     {"tilt 1 deg", {1, 0, 0}, {0, 0, 0}},
@@ -126,8 +134,11 @@ int main(int argc, char** argv) {
       {"roll 180 deg", {1, 0, 179}, {0, 0, 0}}, {"tilt 12 deg", {12, 3, 0}, {2, 0, 0}},
       {"mounted anew", {1, 1, 140}, {1, 2, 4}}, {"moved 5 mm", {0, 0, 0}, {3, 0, 4}}};
   for (const Changed& change : changes) {
-    watch_changed(change, {MotionKind::kFree}, "free", seeds);
-    watch_changed(change, {kEveryMotion.begin(), kEveryMotion.end()}, "every", seeds);
+    if (!wanted(change.name)) continue;
+    watch_changed(change, {MotionKind::kFree}, "free", first, seeds);
+    watch_changed(change, {kEveryMotion.begin(), kEveryMotion.end()}, "every", first, seeds);
   }
-  for (const Unchanged& scene : kUnchanged) watch_unchanged(scene, seeds, minutes);
+  for (const Unchanged& scene : kUnchanged) {
+    if (wanted(scene.name)) watch_unchanged(scene, first, seeds, minutes);
+  }
 }

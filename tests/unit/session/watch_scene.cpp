@@ -154,6 +154,11 @@ void WatchScene::look(const Pose& room_from_eye) {
 }
 
 std::int64_t WatchScene::next(CalibrationWatch& watch) {
+  return next({.add_hand = [&](const HandSample& sample) { watch.add_hand(sample); },
+               .add_frame = [&](const TrackedFrame& frame) { watch.add_frame(frame); }});
+}
+
+std::int64_t WatchScene::next(const WatchSink& sink) {
   time_s_ += 1.0 / options_.rate_hz;
   if (options_.disturbed) disturb();
   const Pose hand_from_camera = true_hand_from_eye_.inverse();
@@ -170,11 +175,11 @@ std::int64_t WatchScene::next(CalibrationWatch& watch) {
       (motion_.speed_deg_s() > 5.0 || motion_.speed_mm_s() > 5.0)) {
     moved_since_turn_s_ += 1.0 / options_.rate_hz;
   }
-  for (const HandSample& sample : std::exchange(samples_, {})) watch.add_hand(sample);
-  watch.add_frame(frame_);
+  for (const HandSample& sample : std::exchange(samples_, {})) sink.add_hand(sample);
+  sink.add_frame(frame_);
   for (; next_sample_s_ < time_s_ + kAhead_s; next_sample_s_ += 1.0 / options_.tracker_hz) {
     motion_.advance(next_sample_s_);
-    watch.add_hand(sample_hand(next_sample_s_, motion_.room_from_eye() * hand_from_camera));
+    sink.add_hand(sample_hand(next_sample_s_, motion_.room_from_eye() * hand_from_camera));
   }
   return frame_.timestamp_ns;
 }

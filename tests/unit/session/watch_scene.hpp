@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <span>
 #include <vector>
@@ -39,6 +40,12 @@ struct WatchSceneOptions {
   double calibration_sigma_mm{0.3};
 };
 
+/// Where a scene goes.
+struct WatchSink {
+  std::function<void(const HandSample&)> add_hand;
+  std::function<void(const TrackedFrame&)> add_frame;
+};
+
 class WatchScene {
  public:
   explicit WatchScene(const WatchSceneOptions& options);
@@ -48,6 +55,7 @@ class WatchScene {
   /// The next frame, and after it the samples of the hand up to some ms after it, into the watch.
   /// Returns the frame's stamp.
   std::int64_t next(CalibrationWatch& watch);
+  std::int64_t next(const WatchSink& sink);
 
   double time_s() const { return time_s_; }
   /// Time so far, since the head was turned, in which the hand moved (5 deg/s or 5 mm/s) and was

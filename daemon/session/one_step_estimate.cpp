@@ -125,10 +125,13 @@ SampleNoise hand_noise_of(const OneStepEstimate& estimate) {
 LensSigma lens_sigma_of(const OneStepEstimate& estimate, const Reconstruction& reconstruction) {
   const LensMatrix& covariance = estimate.result.lens_covariance;
   const LensVector sigma = covariance.diagonal().cwiseSqrt();
+  // Of the distortion the hand tells next to nothing: it makes nobody surer than the images.
+  const LensSigma& of_images = reconstruction.lens.sigma;
   LensSigma result{.focal_px = sigma[kFocal],
                    .centre_px = std::max(sigma[kCentreX], sigma[kCentreY]),
-                   .k1 = sigma[kK1],
-                   .k2 = sigma[kK2]};
+                   .k1 = std::max(sigma[kK1], of_images.k1),
+                   .k2 = std::max(sigma[kK2], of_images.k2),
+                   .distortion_px = of_images.distortion_px};
   for (const ScenePoint& point : reconstruction.structure) {
     for (const ScenePoint::Observation& seen : point.observations) {
       const auto ray = unproject(estimate.result.camera, seen.pixel);

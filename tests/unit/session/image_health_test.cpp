@@ -77,7 +77,7 @@ TEST(Guidance, SaysWhatAilsThePictureBeforeWhatIsInIt) {
   EXPECT_NE(said(ImageCondition::kBlurred).words.find("slower"), std::string::npos);
   EXPECT_NE(said(ImageCondition::kGood).words.find("tilt"), std::string::npos);
   situation.hand_hidden = true;
-  EXPECT_NE(said(ImageCondition::kDark).find("hidden"), std::string::npos);
+  EXPECT_NE(said(ImageCondition::kDark).words.find("hidden"), std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace handeye {
 namespace {
 
 constexpr std::chrono::milliseconds kWait{100};
-constexpr int kLowestPriority = 19;
+constexpr int kNiceness = 5;
 
 }  // namespace
 
@@ -26,11 +26,16 @@ void WatchThread::start() {
 }
 
 void WatchThread::watch(std::int64_t request_id, const WatchedCalibration& calibration) {
+  {
+    const std::scoped_lock lock(status_mutex_);
+    in_use_ = request_id;
+    status_ = {};
+  }
   tasks_.push({request_id, calibration});
 }
 
 void WatchThread::run(const std::stop_token& stop) {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLowestPriority);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
   while (!stop.stop_requested()) {
     TrackedItem* item = tracked_.take(kWait);
     while (const auto task = tasks_.pop()) begin(*task);
@@ -58,15 +63,17 @@ void WatchThread::take_in(TrackedItem& item) {
 void WatchThread::tell() {
   if (!watch_) return;
   const std::int64_t now_ns = monotonic_ns();
-  WatchStatus now = watch_->status(now_ns);
+  const WatchStatus now = watch_->status(now_ns);
   WatchState before{};
   {
+    // The listener within, so that nobody hears of a calibration after another came into use.
     const std::scoped_lock lock(status_mutex_);
+    if (request_id_ != in_use_) return;
     before = std::exchange(status_, now).state;
     status_at_ns_ = now_ns;
+    if (before == now.state) return;
+    listener_(request_id_, now.state);
   }
-  if (before == now.state) return;
-  listener_(request_id_, now.state);
   if (now.state == WatchState::kBroken) {
     spdlog::warn("calibration {}: {}", request_id_, now.text);
   } else if (before == WatchState::kBroken) {

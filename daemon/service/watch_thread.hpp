@@ -16,11 +16,12 @@
 namespace handeye {
 
 /// Watches over the calibration in use, behind everything else: takes what the vision thread
-/// tracked meanwhile and the hand's samples, and lets a CalibrationWatch judge them. Runs at the
-/// lowest priority; what it has no time for is dropped.
+/// tracked meanwhile and the hand's samples, and lets a CalibrationWatch judge them. Yields to the
+/// other threads; what it has no time for is dropped.
 class WatchThread {
  public:
   /// Told, from this thread, of every change of state: the calibration's request and the state.
+  /// Must not call back.
   using Listener = std::function<void(std::int64_t request_id, WatchState state)>;
 
   WatchThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
@@ -28,7 +29,7 @@ class WatchThread {
 
   void start();
 
-  /// From the main thread: watch this one from now on.
+  /// From the main thread: watch this one from now on. After it the listener hears of no other.
   void watch(std::int64_t request_id, const WatchedCalibration& calibration);
 
   /// `now_ns`: CLOCK_MONOTONIC.
@@ -53,7 +54,8 @@ class WatchThread {
   std::uint64_t tracking_{0};  ///< TrackedItem::calibration of the last one
   std::unique_ptr<CalibrationWatch> watch_;
   mutable std::mutex status_mutex_;
-  WatchStatus status_;  ///< as of status_at_ns_
+  std::int64_t in_use_{0};  ///< the calibration that was asked for last
+  WatchStatus status_;      ///< as of status_at_ns_
   std::int64_t status_at_ns_{0};
   std::jthread thread_;
 };

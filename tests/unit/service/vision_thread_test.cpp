@@ -72,6 +72,16 @@ class Vision : public testing::Test {
     return taken;
   }
 
+  /// What the watch would get: the number of the tracking of each frame.
+  std::vector<std::uint64_t> take_watched() {
+    std::vector<std::uint64_t> taken;
+    while (TrackedItem* item = vision_.watched().take(milliseconds(0))) {
+      taken.push_back(item->calibration);
+      vision_.watched().release(item);
+    }
+    return taken;
+  }
+
   Bus bus_{"memq://"};
   Exchange<Frame> frames_{1};
   Frame* spare_{nullptr};
@@ -130,6 +140,38 @@ TEST_F(Vision, TellsTheSolverLateWhatItHadNoRoomFor) {
   for (const std::int64_t id : described) {
     EXPECT_TRUE(std::ranges::binary_search(seen, id, {}, &Observation::feature_id));
   }
+}
+
+TEST_F(Vision, TracksForTheWatchOnlyWhileNothingIsCollected) {
+  vision_.start();
+  show(20, false);
+  EXPECT_TRUE(take_watched().empty()) << "nobody watches";
+  vision_.begin_watching();
+  show(20, false);
+  const std::vector<std::uint64_t> before = take_watched();
+  EXPECT_GE(before.size(), 3U);
+  EXPECT_EQ(std::ranges::count(before, 1U), std::ssize(before)) << "one tracking";
+
+  vision_.begin_collecting({});
+  show(20, false);
+  EXPECT_TRUE(take_watched().empty()) << "it ends at the first frame";
+  EXPECT_EQ(take_all().size(), 20U) << "and every frame is collected";
+
+  vision_.end_collecting();
+  show(20, false);
+  const std::vector<std::uint64_t> after = take_watched();
+  EXPECT_GE(after.size(), 3U);
+  EXPECT_EQ(std::ranges::count(after, 2U), std::ssize(after)) << "features are numbered anew";
+}
+
+TEST_F(Vision, CollectsEveryFrameThoughTheWatchTakesNone) {
+  vision_.start();
+  vision_.begin_watching();
+  while (vision_.watched().dropped() == 0) show(1, false);
+  vision_.begin_collecting({});
+  show(30, false);
+  EXPECT_EQ(take_all().size(), 30U);
+  EXPECT_EQ(vision_.tracked().dropped(), 0U);
 }
 
 }  // namespace

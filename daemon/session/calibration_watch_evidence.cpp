@@ -10,11 +10,11 @@
 namespace handeye {
 namespace {
 
-/// Of chi2 with 1, 2, 3 degrees of freedom, passed by chance once in 10^9: a look a second makes
-/// 10^4 in a long operation, and the tails of what disturbs are longer than chi2's.
-constexpr std::array<double, 4> kContradiction{0.0, 37.3, 41.4, 44.8};
+/// Of chi2 with 1, 2, 3 degrees of freedom, passed by chance once in 10^6: half an hour has some
+/// 10^3 looks, and it takes several in a row.
+constexpr std::array<double, 4> kContradiction{0.0, 23.9, 27.6, 30.7};
 /// Likewise with six: all of hand_from_eye held near the calibration, or free.
-constexpr double kLeastGain = 53.3;
+constexpr double kLeastGain = 38.3;
 
 /// A deviation within the directions whose sigma is small enough.
 struct Seen {

@@ -23,7 +23,7 @@ struct WatchEvidence {
 };
 
 /// Tests the fit's hand_from_eye against the calibrated one, with the covariances of both and by
-/// the likelihood's gain, each at 10^-9, in the directions that the motion shows: turning about one
+/// the likelihood's gain, each at 10^-6, in the directions that the motion shows: turning about one
 /// axis only shows what is across it. Agreement needs all three directions of the rotation.
 /// `covariance`: of the calibration, as in CalibrationResult.
 WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix6d& covariance,

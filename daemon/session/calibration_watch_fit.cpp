@@ -16,19 +16,19 @@ constexpr double kWideBend = 40.0;
 constexpr double kBend = 4.0;
 /// Features are off for as long as they live: measured, the rotation's variance is 1.2 times what
 /// independent errors make it, where features walk off a lot more.
-constexpr double kCorrelation = 1.5;
+constexpr double kCorrelation = 1.3;
 /// Expected fall of the cost by another step, of which 0.5 is one standard deviation.
 constexpr double kConverged = 0.05;
 /// Of a feature that goes its own way, in what features are off usually.
 constexpr double kWild = 3.0;
 /// What a fit without the calibration gains by chance; more is to be looked at closely.
 constexpr double kUsualGain = 20.0;
-constexpr int kMostClosely = 30;  ///< iterations
+constexpr int kMostClosely = 40;  ///< iterations
+/// Chi2 of the hand, each of its numbers, beyond which frames will not come to explain each other.
+constexpr double kHopeless = 4.0;
 /// A gain that no further iterations with the calibration held would take away.
 constexpr double kBeyondReach = 2000.0;
-/// What the motion does not tell stays about where it started.
-constexpr double kFree_rad = 0.3;
-constexpr double kFree_mm = 30.0;
+constexpr double kFree_rad = 0.3, kFree_mm = 30.0;  ///< what the motion does not tell stays there
 /// Beyond, frames do not explain each other: something moved that should not.
 constexpr double kMostHandExcess = 1.8;
 constexpr double kMostImageExcess = 6.0;
@@ -107,8 +107,7 @@ void leave_out_wild_tracks(double image_noise, WatchUnknowns& at) {
 
 struct ImageResiduals {
   double squared{0};  ///< of the inliers
-  std::size_t inliers{0};
-  std::size_t sights{0};
+  std::size_t inliers{0}, sights{0};
   std::size_t tracks{0};  ///< that have inliers
 };
 
@@ -127,6 +126,15 @@ ImageResiduals image_residuals(const WatchUnknowns& at, const WatchWeights& weig
     found.tracks += any ? 1 : 0;
   }
   return found;
+}
+
+double hand_chi2(std::span<const WatchFrame> frames, const WatchUnknowns& at) {
+  double chi2 = 0;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto hand = watch_hand_residual(frames[k], at.room_from_eye[k], at);
+    chi2 += hand.residual.dot(hand.information * hand.residual);
+  }
+  return chi2;
 }
 
 /// The cost with hand_from_eye held near the calibration, found from what explains the frames best
@@ -153,18 +161,16 @@ bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
   const Eigen::Index size = equations.matrix().rows();
   const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(size, size));
   const Eigen::Index common = size - kWatchCommon;
-  double chi2 = 0;
   double freedom = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto hand = watch_hand_residual(frames[k], at.room_from_eye[k], at);
     const auto row = static_cast<Eigen::Index>(6 * k);
-    chi2 += hand.residual.dot(hand.information * hand.residual);
     freedom += 6.0 - (hand.information * covariance.block<6, 6>(row, row)).trace();
   }
   const ImageResiduals image = image_residuals(at, weights);
   const double all = 2.0 * static_cast<double>(image.inliers) -
                      3.0 * static_cast<double>(image.tracks) - kWatchCommon;
-  fit.hand_excess = chi2 / std::max(1.0, freedom);
+  fit.hand_excess = hand_chi2(frames, at) / std::max(1.0, freedom);
   fit.image_excess = image.squared / (weights.image * weights.image) / std::max(1.0, all - freedom);
   fit.outliers = 1.0 - static_cast<double>(image.inliers) / static_cast<double>(image.sights);
   fit.covariance = kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess}) *
@@ -199,8 +205,10 @@ std::optional<WatchFit> watch_fit(std::span<const WatchFrame> frames, const Pose
   free.hold_translation_mm = kFree_mm;
   Descent descent = minimise(frames, free, 2 * options.max_iterations, at);
   fit.iterations += descent.iterations;
-  const double gain = 2.0 * (fit.held_cost - watch_cost(frames, at, free));
-  if (gain > kUsualGain || !start.isApprox(calibrated)) {
+  const bool suspicious = 2.0 * (fit.held_cost - watch_cost(frames, at, free)) > kUsualGain ||
+                          !start.isApprox(calibrated);
+  const double hopeless = kHopeless * 6.0 * static_cast<double>(frames.size());
+  if (suspicious && hand_chi2(frames, at) < hopeless) {
     leave_out_wild_tracks(options.image_noise, at);
     descent = minimise(frames, free, kMostClosely, at);
     fit.iterations += descent.iterations;

@@ -2,12 +2,16 @@
 #include "daemon/session/calibration_watch_frame.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "daemon/session/calibration_watch_equations.hpp"
 
 namespace handeye {
 namespace {
+
+/// More tell hardly more, and take their time.
+constexpr std::size_t kMostSights = 3500;
 
 /// An interpolated pose is better than a sample (docs/math.md section 8).
 double variance_factor(double fraction) {
@@ -51,6 +55,13 @@ std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::si
   for (auto& [feature_id, track] : by_feature) {
     if (track.sights.size() >= min_sights) tracks.push_back(std::move(track));
   }
+  std::ranges::stable_sort(tracks, std::ranges::greater{},
+                           [](const WatchTrack& track) { return track.sights.size(); });
+  std::size_t sights = 0;
+  const auto too_many = std::ranges::find_if(tracks, [&](const WatchTrack& track) {
+    return (sights += track.sights.size()) > kMostSights;
+  });
+  tracks.erase(too_many, tracks.end());
   return tracks;
 }
 

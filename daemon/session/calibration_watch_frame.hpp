@@ -53,7 +53,8 @@ struct WatchTrack {
   std::vector<Sight> sights;                       ///< ordered by frame
 };
 
-/// The features that at least `min_sights` of the frames show.
+/// The features that at least `min_sights` of the frames show; of many those that were seen
+/// longest.
 std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::size_t min_sights);
 
 /// Lays each point where the cameras, as given, see it best. `room_from_eye`: frame by frame.

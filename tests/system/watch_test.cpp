@@ -33,11 +33,12 @@ class WatchSystem : public RoomTest {
 };
 
 TEST_F(WatchSystem, ATurnedHeadIsSaid) {
-  const auto began = steady_clock::now();
-  const auto elapsed_s = [&] { return duration<double>(steady_clock::now() - began).count(); };
   ASSERT_TRUE(room_.start_simulator(
       {.seed = 6,
        .extra_words = {"--turn-head", fmt::format("{}:{}:roll", kTurned_s, kTurn_deg)}}));
+  // The simulator's time begins soon after it has written its files.
+  const auto began = steady_clock::now();
+  const auto elapsed_s = [&] { return duration<double>(steady_clock::now() - began).count(); };
   ASSERT_TRUE(room_.start_daemon());
   Listener& listener = room_.listener();
   const request_t start = start_request(kCalibration_s);

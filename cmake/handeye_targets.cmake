@@ -36,11 +36,17 @@ function(handeye_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# handeye_test(NAME SOURCES ... LINKS ...): one GoogleTest program; every TEST in it is one ctest test.
+# handeye_test(NAME [TOGETHER] SOURCES ... LINKS ...): one GoogleTest program; every TEST in it is one ctest test. TOGETHER:
+# the program is one, for its TESTs share what takes long to make.
 function(handeye_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "TOGETHER" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE handeye_build_options GTest::gtest_main GTest::gmock ${ARG_LINKS})
+  if(ARG_TOGETHER)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+    return()
+  endif()
   gtest_discover_tests(
     ${name}
     DISCOVERY_TIMEOUT 60

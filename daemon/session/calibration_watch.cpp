@@ -157,9 +157,7 @@ WatchStatus CalibrationWatch::status(std::int64_t now_ns) const {
     status.sigma_deg = last_.sigma_deg;
     status.age_s = std::max(0.0, seconds(now_ns - last_ns_));
   }
-  const std::string deviation = last_.turned || last_.kind == WatchEvidence::Kind::kAgrees
-                                    ? fmt::format("turned by {:.1f} deg", last_.deviation_deg)
-                                    : fmt::format("moved by {:.1f} mm", last_.deviation_mm);
+  const std::string deviation = fmt::format("turned by {:.1f} deg", last_.deviation_deg);
   if (broken_) {
     status.state = WatchState::kBroken;
     status.text = fmt::format("the camera head has {}: calibrate again", deviation);

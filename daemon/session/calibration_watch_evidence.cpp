@@ -54,16 +54,12 @@ WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix
   const Seen turn =
       look_at(log_so3(fit.hand_from_eye.linear() * hand_from_eye.linear().transpose()),
               both.topLeftCorner<3, 3>(), rad_from_deg(options.seen_deg));
-  const Seen shift = look_at(fit.hand_from_eye.translation() - hand_from_eye.translation(),
-                             both.bottomRightCorner<3, 3>(), options.seen_mm);
   WatchEvidence evidence;
   evidence.deviation_deg = deg_from_rad(turn.size);
   evidence.sigma_deg = deg_from_rad(turn.sigma);
-  evidence.deviation_mm = shift.size;
   evidence.measured = turn.directions > 0;
   if (!fit.converged || !explains(fit)) return evidence;
-  evidence.turned = turn.contradicts(rad_from_deg(options.turned_deg));
-  if (evidence.turned || shift.contradicts(options.moved_mm)) {
+  if (turn.contradicts(rad_from_deg(options.turned_deg))) {
     if (fit.gain > kLeastGain) evidence.kind = WatchEvidence::Kind::kContradicts;
   } else if (turn.directions == 3) {
     evidence.kind = WatchEvidence::Kind::kAgrees;

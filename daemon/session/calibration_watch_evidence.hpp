@@ -7,25 +7,21 @@ namespace handeye {
 
 struct WatchEvidenceOptions {
   double turned_deg{0.4};  ///< a smaller deviation is none that matters
-  double moved_mm{3.0};    ///< likewise, of where the camera's centre is on the hand
   double seen_deg{0.3};    ///< a direction whose sigma is larger is not seen
-  double seen_mm{1.0};
 };
 
 /// What a fit says about the calibration in use.
 struct WatchEvidence {
   enum class Kind { kNone, kAgrees, kContradicts } kind{Kind::kNone};
-  bool turned{false};       ///< what contradicts is the rotation, else the place
   double deviation_deg{0};  ///< turn against the calibration, in the directions that are seen
   double sigma_deg{0};      ///< of it, both sides' uncertainty
-  double deviation_mm{0};
-  bool measured{false};  ///< any direction of the rotation is seen
+  bool measured{false};     ///< any direction of the rotation is seen
 };
 
-/// Tests the fit's hand_from_eye against the calibrated one, with the covariances of both and by
-/// the likelihood's gain, each at 10^-6, in the directions that the motion shows: turning about one
-/// axis only shows what is across it. Agreement needs all three directions of the rotation.
-/// `covariance`: of the calibration, as in CalibrationResult.
+/// Tests the rotation of the fit's hand_from_eye against the calibrated one, with the covariances
+/// of both and by the likelihood's gain, each at 10^-6, in the directions that the motion shows:
+/// turning about one axis only shows what is across it. Agreement needs all three directions of the
+/// rotation. `covariance`: of the calibration, as in CalibrationResult.
 WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix6d& covariance,
                     const WatchEvidenceOptions& options = {});
 

@@ -112,8 +112,8 @@ struct CalibrationResult {
   Residuals residuals;
   double reprojection_px{0};
   std::optional<SampleNoise> hand_noise;  ///< nothing: there was no answer to weigh
-  double image_noise_px{0};               ///< of a feature, per axis; 0: not estimated
-  std::vector<MethodResult> methods;      ///< the answer's is the last
+  double image_noise_px{0};           ///< of a feature, per axis, 0.1 at least; 0: not estimated
+  std::vector<MethodResult> methods;  ///< the answer's is the last
 
   struct Frames {
     std::int64_t received{0}, used{0}, keyframes{0}, dropped{0};

@@ -115,8 +115,8 @@ void write_noise(const CalibrationResult& result, result_t& message) {
 void read_noise(const result_t& message, CalibrationResult& result) {
   result.image_noise_px = message.image_noise_px;
   if (message.hand_noise_source.empty()) return;
-  result.hand_noise = SampleNoise{message.hand_noise_rotation_deg, message.hand_noise_translation_mm,
-                                message.hand_noise_source};
+  result.hand_noise = SampleNoise{message.hand_noise_rotation_deg,
+                                  message.hand_noise_translation_mm, message.hand_noise_source};
 }
 
 void write_figures(const CalibrationResult& result, result_t& message) {

@@ -86,7 +86,7 @@ struct OneStepResult {
   LensMatrix lens_covariance{LensMatrix::Zero()};
   double hand_rotation_sigma_rad{0};    ///< as given (mean, where measured) or estimated
   double hand_translation_sigma_mm{0};  ///< likewise
-  double image_noise_px{0};             ///< likewise
+  double image_noise_px{0};             ///< likewise; estimated as 0.1 at least
   double reprojection_px{0};            ///< rms over the keyframes' observations
   double chi2_per_dof{0};               ///< of the tracker's residuals against the noise assumed
   double correlation_inflation{1};      ///< of the covariance, for errors correlated in time

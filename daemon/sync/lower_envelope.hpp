@@ -7,10 +7,14 @@
 
 namespace handeye {
 
-/// The lower envelope of points that come in order of time: the line below all points of a sliding
-/// window that is nearest to them (the edge of the lower convex hull below their mean), its slope
-/// within limits. The hull needs only the lowest point of each slice of the window, which is what
-/// is kept. Constant time and no allocation.
+/// The lower envelope of points that come in order of time: of each slice of a sliding window the
+/// lowest point counts, and the line is the one that a tenth of these lie below, each with the
+/// weight of its slice's observations (quantile regression: Koenker and Bassett, Econometrica 46,
+/// 1978), its slope within limits. Points that
+/// are late by what is never negative crowd at the line, and it is theirs within some microseconds;
+/// where the device's own stamps are noisy, which makes points early, the earliest of all do not
+/// drag it down. A point that is earlier than such noise proves that the line was too high, which
+/// then goes down to it. Constant time and no allocation.
 class LowerEnvelope {
  public:
   /// An observation: device time and how much later the host's clock read when it arrived, both
@@ -38,18 +42,22 @@ class LowerEnvelope {
     double observations{0};
   };
   static constexpr std::size_t kSlices = 80;
-  /// Lower convex hull of the slices' points, left to right.
-  struct Hull {
-    std::array<Point, kSlices> points;
-    std::size_t size{0};
-    double mean_device_s{0};
-  };
 
   const Slice& slice(std::size_t index) const { return slices_[(first_ + index) % kSlices]; }
+  /// Of a slice's lowest point, since the window began.
+  double since_begin_s(std::size_t index) const {
+    return slice(index).lowest.device_s - slice(0).lowest.device_s;
+  }
   void drop_oldest();
   bool file(const Point& point);
-  Hull hull() const;
   void fit();
+  /// The line of this slope.
+  struct Fit {
+    double height_s{0};  ///< where the window begins
+    double lowest_s{0};  ///< of the points, seen along the line
+    double pull{0};      ///< positive: a larger slope fits better
+  };
+  Fit fit_height(double slope) const;
 
   double window_s_;
   double max_slope_;

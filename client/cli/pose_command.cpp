@@ -60,6 +60,7 @@ std::vector<std::string_view> flag_words(std::int32_t flags) {
   if ((flags & camera_pose_t::FLAG_CALIBRATION_BROKEN) != 0) {
     words.emplace_back("calibration_broken");
   }
+  if ((flags & camera_pose_t::FLAG_RESTORED) != 0) words.emplace_back("restored");
   return words;
 }
 
@@ -75,7 +76,8 @@ std::string pose_json_line(const camera_pose_t& pose) {
                               {"room_from_eye", nullptr},
                               {"covariance", nullptr},
                               {"calibration_request_id", pose.calibration_request_id},
-                              {"calibration_age_s", pose.calibration_age_s}};
+                              {"calibration_age_s", nullptr}};
+  if (pose.calibration_age_s >= 0) json["calibration_age_s"] = pose.calibration_age_s;
   if (valid) {
     json["room_from_eye"] = {{"q_wxyz", pose.q_wxyz}, {"t_mm", pose.t_mm}};
     for (int row = 0; row < 6; ++row) {
@@ -99,7 +101,7 @@ std::string sigma_text(const camera_pose_t& pose) {
 constexpr std::string_view kHead =
     "# timestamp_ns validity qw qx qy qz x_mm y_mm z_mm sigma_deg sigma_mm predicted_ms flags\n"
     "# room_from_eye; anything but 'valid' is all zero, do not use it; flags: predicted, "
-    "calibration_doubtful, calibration_broken, or -";
+    "calibration_doubtful, calibration_broken, restored, or -";
 
 std::string pose_line(const camera_pose_t& pose) {
   const auto& q = pose.q_wxyz;
@@ -169,7 +171,8 @@ void add_pose_command(CLI::App& app, Action& action) {
       "A pose flagged 'predicted' was carried beyond the tracker's last sample; "
       "'calibration_doubtful' and 'calibration_broken' say that the head seems to have been "
       "turned: "
-      "calibrate again.");
+      "calibrate again; 'restored' that the calibration is from before the daemon's last restart, "
+      "and not seen to hold since.");
   command->callback([options, &action] { action = [options] { return run_pose(*options); }; });
 }
 

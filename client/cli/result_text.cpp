@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "client/cli/result_parts.hpp"
+#include "daemon/session/age_text.hpp"
 
 namespace handeye::cli {
 namespace {
@@ -15,6 +16,16 @@ std::string time_offset_text(const CalibrationResult& result) {
     text += fmt::format(" +- {:.2f} ms", *result.time_offset_sigma_s * 1e3);
   }
   return row("time offset", text + ", added to the tracker's time stamps");
+}
+
+/// Only of an old answer: that a new one is new goes without saying.
+std::string vintage_text(const CalibrationResult& result) {
+  constexpr double kNew_s = 60;
+  if (!result.vintage) return "";
+  const Vintage& vintage = *result.vintage;
+  if (!vintage.restored && vintage.age_s && *vintage.age_s < kNew_s) return "";
+  return row("age", age_text(vintage.age_s) +
+                        (vintage.restored ? ", from before the daemon's restart" : ""));
 }
 
 /// What is found of a lens with the calibration, and how sure that is.
@@ -111,6 +122,7 @@ std::string basis_text(const CalibrationResult& result) {
 
 std::string result_text(const CalibrationResult& result, const Palette& palette) {
   std::string text = verdict_text(result, fmt::format("body {}", result.body_id), palette);
+  text += vintage_text(result);
   if (result.has_estimate) {
     text += pose_text(result.solution.hand_from_eye);
     text += uncertainty_text(result, palette);

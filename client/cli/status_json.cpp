@@ -94,6 +94,8 @@ Json status_json(const status_t& status) {
           {"session", session_json(status)},
           {"calibrated", status.calibrated != 0},
           {"calibration_request_id", status.calibration_request_id},
+          {"calibration_age_s", known_or_null(status.calibration_age_s)},
+          {"calibration_restored", status.calibration_restored != 0},
           {"watch", watch_json(status)},
           {"undecodable", status.undecodable}};
 }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "client/cli/status_text.hpp"
 
+#include <optional>
+
 #include <fmt/format.h>
+
+#include "daemon/session/age_text.hpp"
 
 namespace handeye::cli {
 namespace {
@@ -83,6 +87,15 @@ std::string turned_text(const status_t& status) {
                      status.turned_deg[0], status.turned_deg[1], status.turned_deg[2]);
 }
 
+std::string calibrated_text(const status_t& status, const Palette& palette) {
+  if (status.calibrated == 0) return "no";
+  std::optional<double> age_s;
+  if (status.calibration_age_s >= 0) age_s = status.calibration_age_s;
+  const std::string text = palette.green("yes, CAMERA_POSE is published") + ", " + age_text(age_s);
+  if (status.calibration_restored == 0) return text;
+  return text + palette.yellow(", from before the daemon's restart: not seen to hold yet");
+}
+
 /// Whether the calibration in use still holds.
 std::string watch_text(const status_t& status, const Palette& palette) {
   const std::string age = status.watch_age_s < 0
@@ -129,8 +142,7 @@ std::string status_text(const status_t& status, const Palette& palette) {
       text += fmt::format("                {}\n", line);
     }
   }
-  text += fmt::format("calibrated      {}\n",
-                      status.calibrated ? palette.green("yes, CAMERA_POSE is published") : "no");
+  text += fmt::format("calibrated      {}\n", calibrated_text(status, palette));
   text += watch_text(status, palette);
   if (status.undecodable > 0) {
     text += palette.yellow(fmt::format("{} messages on the daemon's channels were not of its types",

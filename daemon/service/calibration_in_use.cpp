@@ -15,11 +15,18 @@ SampleNoise hand_noise(const CalibrationResult& result, const Config::Tracker& t
 
 }  // namespace
 
+std::optional<std::int64_t> solved_ns(const Vintage& vintage, std::int64_t now_ns) {
+  if (!vintage.age_s) return std::nullopt;
+  return now_ns - static_cast<std::int64_t>(1e9 * *vintage.age_s);
+}
+
 ActiveCalibration active_calibration(const CalibrationResult& result,
-                                     const Config::Tracker& tracker, std::int64_t accepted_ns) {
+                                     const Config::Tracker& tracker, std::int64_t now_ns) {
   const SampleNoise noise = hand_noise(result, tracker);
+  const Vintage vintage = result.vintage.value_or(Vintage{});
   return {.request_id = result.request_id,
-          .accepted_ns = accepted_ns,
+          .accepted_ns = solved_ns(vintage, now_ns),
+          .restored = vintage.restored,
           .body_id = result.body_id,
           .hand_from_eye = result.solution.hand_from_eye,
           .covariance = result.covariance,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "daemon/config/config.hpp"
 #include "daemon/service/pose_publisher.hpp"
@@ -13,9 +14,13 @@ namespace handeye {
 // An accepted result, as those need it who use it from then on. Where it does not tell the hand's
 // noise, the configuration does.
 
-/// For CAMERA_POSE. `accepted_ns`: CLOCK_MONOTONIC.
+/// When it was found by CLOCK_MONOTONIC, below 0 if the machine was started since; `now_ns`: when
+/// its age was that of the vintage. Nothing: not known.
+std::optional<std::int64_t> solved_ns(const Vintage& vintage, std::int64_t now_ns);
+
+/// For CAMERA_POSE, once it has a vintage. `now_ns`: CLOCK_MONOTONIC.
 ActiveCalibration active_calibration(const CalibrationResult& result,
-                                     const Config::Tracker& tracker, std::int64_t accepted_ns);
+                                     const Config::Tracker& tracker, std::int64_t now_ns);
 
 /// For the watch, which trusts neither hand nor features more than is plausible, whatever the
 /// calibration found.

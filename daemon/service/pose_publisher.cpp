@@ -12,6 +12,7 @@ namespace {
 // latency; then it is late.
 constexpr std::int64_t kPatience_ns = 200'000'000;
 constexpr std::size_t kMostPending = 64;
+constexpr std::int64_t kAgeNotKnown = -1;
 
 std::int32_t validity_of(LookupStatus status) {
   switch (status) {
@@ -63,6 +64,13 @@ void PosePublisher::use(const ActiveCalibration& calibration) {
   hand_.clear();
 }
 
+void PosePublisher::hear(const WatchWord& word) {
+  watch_ = word;
+  if (!calibration_ || calibration_->request_id != word.request_id) return;
+  // Seen to hold, it is as good as one of today.
+  if (word.state == status_t::WATCH_HOLDS) calibration_->restored = false;
+}
+
 void PosePublisher::add_frame(const FrameStamp& stamp) {
   if (!calibration_) return;
   pending_.push_back(stamp);  // full: overwrites the oldest
@@ -111,9 +119,12 @@ void PosePublisher::begin_message(const FrameStamp& stamp, std::int64_t now_ns) 
   message_ = camera_pose_t{};
   message_.timestamp_ns = stamp.timestamp_ns;
   message_.frame_seq = stamp.sequence;
-  message_.flags = watch_flags();
+  message_.flags = calibration_flags();
   message_.calibration_request_id = calibration_->request_id;
-  message_.calibration_age_s = (now_ns - calibration_->accepted_ns) / 1'000'000'000;
+  message_.calibration_age_s = kAgeNotKnown;
+  if (const auto& accepted_ns = calibration_->accepted_ns) {
+    message_.calibration_age_s = (now_ns - *accepted_ns) / 1'000'000'000;
+  }
 }
 
 void PosePublisher::write(const HandEstimate& hand) {
@@ -124,11 +135,16 @@ void PosePublisher::write(const HandEstimate& hand) {
   message_.predicted_s = hand.predicted_s;
 }
 
-std::int32_t PosePublisher::watch_flags() const {
-  if (watch_.request_id != calibration_->request_id) return 0;
-  if (watch_.state == status_t::WATCH_DOUBTFUL) return camera_pose_t::FLAG_CALIBRATION_DOUBTFUL;
-  if (watch_.state == status_t::WATCH_BROKEN) return camera_pose_t::FLAG_CALIBRATION_BROKEN;
-  return 0;
+std::int32_t PosePublisher::calibration_flags() const {
+  const std::int32_t restored = calibration_->restored ? camera_pose_t::FLAG_RESTORED : 0;
+  if (watch_.request_id != calibration_->request_id) return restored;
+  if (watch_.state == status_t::WATCH_DOUBTFUL) {
+    return restored | camera_pose_t::FLAG_CALIBRATION_DOUBTFUL;
+  }
+  if (watch_.state == status_t::WATCH_BROKEN) {
+    return restored | camera_pose_t::FLAG_CALIBRATION_BROKEN;
+  }
+  return restored;
 }
 
 }  // namespace handeye

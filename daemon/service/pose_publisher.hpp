@@ -18,7 +18,9 @@ namespace handeye {
 /// The accepted calibration that CAMERA_POSE rests on.
 struct ActiveCalibration {
   std::int64_t request_id{0};
-  std::int64_t accepted_ns{0};  ///< CLOCK_MONOTONIC
+  /// CLOCK_MONOTONIC; below 0: before the machine was started. Nothing: not known.
+  std::optional<std::int64_t> accepted_ns;
+  bool restored{false};  ///< by an earlier start of the daemon
   int body_id{0};
   Pose hand_from_eye{Pose::Identity()};
   Matrix6d covariance{Matrix6d::Zero()};  ///< of hand_from_eye, as in result_t
@@ -62,7 +64,7 @@ class PosePublisher {
   void use(const ActiveCalibration& calibration);
   const std::optional<ActiveCalibration>& calibration() const { return calibration_; }
   /// The last word counts; one about another calibration than that in use has no effect.
-  void hear(const WatchWord& word) { watch_ = word; }
+  void hear(const WatchWord& word);
   void add_hand(const HandSample& sample) { hand_.push(sample); }
   void add_frame(const FrameStamp& stamp);
   /// Publishes what can be, and what has waited too long.
@@ -76,7 +78,7 @@ class PosePublisher {
                                       std::int64_t now_ns) const;
   void begin_message(const FrameStamp& stamp, std::int64_t now_ns);
   void write(const HandEstimate& hand);
-  std::int32_t watch_flags() const;
+  std::int32_t calibration_flags() const;
 
   PosePublisherOptions options_;
   Publisher<camera_pose_t> publisher_;

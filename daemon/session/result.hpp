@@ -83,6 +83,13 @@ struct SampleNoise {
   std::string source{"estimated"};  ///< given, measured (6dcov), estimated (from the residuals)
 };
 
+/// When an answer was found, which replays do not tell.
+struct Vintage {
+  std::int64_t solved_utime{0};  ///< CLOCK_REALTIME [us]
+  std::optional<double> age_s;   ///< nothing: not known
+  bool restored{false};          ///< by an earlier start of the daemon
+};
+
 /// Everything a calibration says; the fields of the result JSON and of result_t.
 struct CalibrationResult {
   std::int64_t request_id{0};
@@ -94,7 +101,8 @@ struct CalibrationResult {
   /// known to.
   std::string missing;
   WantedSigma wanted;
-  std::optional<Board> board;  ///< the eye's poses came from it; nothing: from a reconstruction
+  std::optional<Board> board;      ///< the eye's poses came from it; nothing: from a reconstruction
+  std::optional<Vintage> vintage;  ///< nothing: of a replay
 
   bool has_estimate{false};  ///< false: the block below is meaningless
   std::string method;        ///< whose answer it is: a name of `methods`

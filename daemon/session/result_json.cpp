@@ -137,6 +137,11 @@ Json to_json(const CalibrationResult& result) {
                           {"translation_mm", result.wanted.translation_mm}};
   json["eye"] = result.board ? "pattern" : "sfm";
   if (result.board) json["board"] = to_string(*result.board);
+  if (result.vintage) {
+    json["solved_utime"] = result.vintage->solved_utime;
+    json["age_s"] = number(result.vintage->age_s);
+    json["restored"] = result.vintage->restored;
+  }
   add_estimate(json, result);
   json["camera"] = camera_json(result);
   json["residuals"] = residuals_json(result.residuals);

@@ -11,6 +11,7 @@ namespace {
 // What result_t says where there is nothing to say.
 constexpr double kNoTimeOffset = 0;
 constexpr double kNoTimeOffsetSigma = -1;
+constexpr double kNoAge = -1;
 // And where a method's own sigma is not known.
 constexpr double kNoSigma = -1;
 // The source of a lens of which no more is said.
@@ -161,6 +162,20 @@ void read_figures(const result_t& message, CalibrationResult& result) {
                        message.time_handeye_ms, message.time_total_ms};
 }
 
+void write_vintage(const Vintage& vintage, result_t& message) {
+  message.solved_utime = vintage.solved_utime;
+  message.age_s = vintage.age_s.value_or(kNoAge);
+  message.restored = vintage.restored;
+}
+
+Vintage vintage_from_message(const result_t& message) {
+  Vintage vintage{.solved_utime = message.solved_utime,
+                  .age_s = std::nullopt,
+                  .restored = message.restored != 0};
+  if (message.age_s >= 0) vintage.age_s = message.age_s;
+  return vintage;
+}
+
 /// A daemon sends nothing else but boards.
 std::optional<Board> board_from_message(const std::string& text) {
   const auto parsed = parse_board(text);
@@ -194,6 +209,7 @@ result_t to_message(const CalibrationResult& result) {
   message.time_offset_sigma_s = result.time_offset_s
                                     ? result.time_offset_sigma_s.value_or(kNoTimeOffsetSigma)
                                     : kNoTimeOffsetSigma;
+  if (result.vintage) write_vintage(*result.vintage, message);
   write_camera(result, message);
   write_noise(result, message);
   write_figures(result, message);
@@ -227,6 +243,7 @@ CalibrationResult from_message(const result_t& message) {
     result.time_offset_s = message.time_offset_s;
     result.time_offset_sigma_s = message.time_offset_sigma_s;
   }
+  if (message.solved_utime != 0) result.vintage = vintage_from_message(message);
   read_camera(message, result);
   read_noise(message, result);
   read_figures(message, result);

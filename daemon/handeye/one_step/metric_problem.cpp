@@ -12,14 +12,13 @@ namespace {
 
 constexpr int kImageDimensions = 2;
 constexpr int kHandDimensions = 6;
-constexpr double kSettled = 1e-4;    // decrease of the cost still promised: 0.01 sigma of a step
 constexpr double kMaxDamping = 1e6;  // no step is small enough
 constexpr double kFirstDamping = 1e-3;
 constexpr double kSlow = 0.1;  // of a promise to the one before: linearise anew
 
 /// So much more cost is none: what frames do that follow is known to first order only, and where
 /// the gradient is zero, not where the cost's last digit is least, is the minimum.
-constexpr double kNoIncrease = 0.01;
+constexpr double kNoIncrease = 0.1;
 /// Where hardly anything but the scale is wrong, a step along it bends: the images fall ill and are
 /// well again a step later. Damped steps would creep (watchdog: Chamberlain et al. 1982).
 constexpr int kMostUphill = 3;
@@ -112,9 +111,18 @@ void MetricProblem::set_noise(const MetricNoise& noise) {
                                 options_.hand_noise == HandNoiseSource::kMeasured);
 }
 
-bool MetricProblem::minimise(MetricNoise noise) {
+bool MetricProblem::retreat(double& damping) {
+  const bool back = least_.has_value();
+  if (back) state_ = std::exchange(least_, std::nullopt)->state;
+  if (at_elimination_ || back) damping = std::max(10.0 * damping, kFirstDamping);
+  eliminated_ = at_elimination_ && !back;
+  // The rows went into the elimination: they are wanted again.
+  return evaluate(state_, here_);
+}
+
+Minimisation MetricProblem::minimise(MetricNoise noise) {
   set_noise(noise);
-  if (!evaluate(state_, here_)) return false;
+  if (!evaluate(state_, here_)) return Minimisation::kNothing;
   // The first time is at the start.
   if (sighted_at_start_.empty()) sighted_at_start_ = here_.sighted;
   at_elimination_ = false;
@@ -122,20 +130,24 @@ bool MetricProblem::minimise(MetricNoise noise) {
   double damping = 0;
   double promised_before = 0;
   int uphill = 0;
-  for (int i = 0; i < options_.max_iterations; ++i) {
+  least_.reset();
+  for (int i = 0; i < options_.max_iterations && damping <= kMaxDamping; ++i) {
     hand_rows_ = handeye::hand_rows(scene_, state_, here_.eyes, hands_);
     const ImageGradient of_images = gradient_of(scene_, here_.rows, lens_free());
     if (!eliminated_) eliminate_points();
-    if (!factorised && !factorise(damping)) return false;
+    if (!factorised && !factorise(damping)) return Minimisation::kNothing;
     factorised = true;
 
     const NormalEquations::Step step = equations_.step(of_images, gradient());
-    if (!step.of_unknowns.allFinite()) return false;
+    if (!step.of_unknowns.allFinite()) return Minimisation::kNothing;
     const double promised = step.promised;
-    if (promised < kSettled) break;
+    // A damped step promises little wherever it is taken from.
+    const bool at_rest = promised < kSettledPromise && damping == 0;
+    if (at_rest && !least_) return Minimisation::kSettled;
     ++iterations_;
     MetricState tried = moved_by(state_, step.of_unknowns, step.of_points);
-    const bool possible = evaluate(tried, next_);
+    // Where it rests up the hill is another minimum.
+    const bool possible = !at_rest && evaluate(tried, next_);
     const double least = least_ ? least_->cost : here_.cost;
     const bool lower = possible && next_.cost < least + kNoIncrease;
     if (lower || (possible && damping == 0 && uphill < kMostUphill)) {
@@ -153,29 +165,23 @@ bool MetricProblem::minimise(MetricNoise noise) {
       damping = damping > kFirstDamping ? 0.1 * damping : 0;
       promised_before = promised;
     } else {
-      if (damping > kMaxDamping) break;
-      const bool back = least_.has_value();
-      if (back) state_ = std::exchange(least_, std::nullopt)->state;
-      if (at_elimination_ || back) damping = std::max(10.0 * damping, kFirstDamping);
-      eliminated_ = at_elimination_ && !back;
       factorised = false;
-      // The rows went into the elimination: they are wanted again.
-      if (!evaluate(state_, here_)) return false;
+      if (!retreat(damping)) return Minimisation::kNothing;
     }
   }
-  if (least_) {
-    state_ = std::exchange(least_, std::nullopt)->state;
-    eliminated_ = false;
-    if (!evaluate(state_, here_)) return false;
-  }
-  return true;
+  if (least_ && !retreat(damping)) return Minimisation::kNothing;
+  return Minimisation::kUnsettled;
 }
 
-bool MetricProblem::linearise_anew() {
-  if (!evaluate(state_, here_)) return false;
+std::optional<double> MetricProblem::linearise_anew() {
+  if (!evaluate(state_, here_)) return std::nullopt;
   hand_rows_ = handeye::hand_rows(scene_, state_, here_.eyes, hands_);
+  const ImageGradient of_images = gradient_of(scene_, here_.rows, lens_free());
   eliminate_points();
-  return factorise(0);
+  if (!factorise(0)) return std::nullopt;
+  const NormalEquations::Step step = equations_.step(of_images, gradient());
+  if (!step.of_unknowns.allFinite()) return std::nullopt;
+  return step.promised;
 }
 
 }  // namespace handeye

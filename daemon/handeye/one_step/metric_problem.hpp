@@ -10,6 +10,16 @@
 
 namespace handeye {
 
+/// Where the equations promise less decrease of the cost, it is the minimum: 0.014 sigma of a step.
+inline constexpr double kSettledPromise = 1e-4;
+
+/// How minimising ended.
+enum class Minimisation {
+  kNothing,    ///< the equations determine nothing, or a number is none
+  kUnsettled,  ///< out of iterations, or where no step is small enough to lead down
+  kSettled,    ///< where the equations, linearised near it, promise no step worth taking
+};
+
 /// The least-squares problem of `one_step` at a given noise, and its minimiser: Gauss-Newton with
 /// the points eliminated, damped where a step fails (Levenberg, Marquardt). Near the minimum the
 /// images' equations are linearised once and only the gradient is computed anew: that alone says
@@ -20,10 +30,11 @@ class MetricProblem {
 
   /// Which frames' hands count: one a frame of the scene.
   void keep(std::vector<bool> kept) { hands_.kept = std::move(kept); }
-  /// From where it stands; false where the equations determine nothing.
-  bool minimise(MetricNoise noise);
-  /// Linearises everything where it stands, for `equations`; false as above.
-  bool linearise_anew();
+  /// From where it stands.
+  Minimisation minimise(MetricNoise noise);
+  /// Linearises everything where it stands, for `equations`: by how much they promise that the cost
+  /// falls still. Nothing where they determine nothing.
+  std::optional<double> linearise_anew();
 
   const MetricScene& scene() const { return scene_; }
   const OneStepOptions& options() const { return options_; }
@@ -34,6 +45,7 @@ class MetricProblem {
   const std::vector<Pose>& eyes() const { return here_.eyes; }
   const std::vector<HandRow>& hand_rows() const { return hand_rows_; }
   const NormalEquations& equations() const { return equations_; }
+  double cost() const { return here_.cost; }
   double image_squares() const { return here_.rows.squares; }  ///< [px^2]
   /// Likewise weighted by the loss, and made good for what the loss takes from inliers.
   double robust_image_squares() const;
@@ -64,6 +76,8 @@ class MetricProblem {
   MetricColumns gradient() const;  ///< of hands and priors
   bool factorise(double damping);
   void eliminate_points();
+  /// From a step that was none to where the cost was least, to damp it there; false as `evaluate`.
+  bool retreat(double& damping);
   void set_noise(const MetricNoise& noise);
 
   const MetricScene& scene_;

@@ -19,6 +19,8 @@ constexpr double kLeastImageNoise_px = 0.1;
 constexpr double kLeastRotation_rad = 1e-5;
 constexpr double kLeastTranslation_mm = 2e-3;
 
+constexpr double kLeastLeft = 0.2;  // of the residuals' freedom
+
 double square(double x) {
   return x * x;
 }
@@ -28,17 +30,32 @@ double standard_deviation(double variance, double least) {
 }
 
 /// One kind of error, rotation or translation, over all hands.
-struct Component {
-  double squares{0};   ///< of residuals, without what is not the tracker's; weighted
-  double expected{0};  ///< for a sample's variance of 1; weighted alike
+class Component {
+ public:
+  explicit Component(double variance) : variance_(variance) {}
 
   /// `share`: of three axes, by which interpolation lowers the variance; `other`: variance that is
-  /// not the tracker's; `taken`: that the solution took up.
-  void add(double residual_square, double share, double other, double taken, double variance) {
-    const double weight = 1.0 / square(share * variance + other / 3.0);
-    squares += weight * (residual_square - other + taken);
-    expected += weight * 3.0 * share;
+  /// not the tracker's; `taken`: that the solution took up. Residuals weighted.
+  void add(double residual_square, double share, double other, double taken) {
+    const double weight = 1.0 / square(share * variance_ + other / 3.0);
+    squares_ += weight * (residual_square - other);
+    taken_ += weight * taken;
+    expected_ += weight * 3.0 * share;
   }
+
+  /// A sample's variance that the squares, without what was taken up of it, are as expected of.
+  /// What was taken up counts in proportion to the variance sought, else, where it is nearly all,
+  /// as it was: both agree in the end, the first much sooner (Harville 1977).
+  double variance() const {
+    const double left = expected_ - taken_ / variance_;
+    return left > kLeastLeft * expected_ ? squares_ / left : (squares_ + taken_) / expected_;
+  }
+
+ private:
+  double variance_;     ///< of a sample, as was assumed
+  double squares_{0};   ///< of residuals, without what is not the tracker's; weighted
+  double taken_{0};     ///< weighted alike
+  double expected_{0};  ///< for a sample's variance of 1
 };
 
 }  // namespace
@@ -125,8 +142,8 @@ MetricNoise estimated_noise(const MetricProblem& problem) {
   const MetricScene& scene = problem.scene();
   const Leverage leverage = hand_leverage(problem);
   const std::vector<HandRow>& rows = problem.hand_rows();
-  Component rotation;
-  Component translation;
+  Component rotation(square(problem.noise().hand_rotation_rad));
+  Component translation(square(problem.noise().hand_translation_mm));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MetricFrame& frame = scene.frames[rows[i].frame];
     const Pose& eye = problem.eyes()[rows[i].frame];
@@ -137,14 +154,12 @@ MetricNoise estimated_noise(const MetricProblem& problem) {
     const double share = interpolated_variance(*frame.hand);
     const Vector6d& taken = leverage.variances[i];
     rotation.add(weight * residual.head<3>().squaredNorm(), share, other.head<3>().sum(),
-                 taken.head<3>().sum(), square(problem.noise().hand_rotation_rad));
+                 taken.head<3>().sum());
     translation.add(weight * residual.tail<3>().squaredNorm(), share, other.tail<3>().sum(),
-                    taken.tail<3>().sum(), square(problem.noise().hand_translation_mm));
+                    taken.tail<3>().sum());
   }
-  noise.hand_rotation_rad =
-      standard_deviation(rotation.squares / rotation.expected, kLeastRotation_rad);
-  noise.hand_translation_mm =
-      standard_deviation(translation.squares / translation.expected, kLeastTranslation_mm);
+  noise.hand_rotation_rad = standard_deviation(rotation.variance(), kLeastRotation_rad);
+  noise.hand_translation_mm = standard_deviation(translation.variance(), kLeastTranslation_mm);
   return noise;
 }
 

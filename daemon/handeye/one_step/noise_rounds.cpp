@@ -14,7 +14,8 @@ namespace handeye {
 namespace {
 
 constexpr double kSettledNoise = 0.02;  // relative change
-constexpr int kMostLinearisations = 4;  // at the end
+constexpr int kMostLinearisations = 5;  // at the end
+constexpr double kOfNoAccount = 1e-3;   // of the cost: 0.045 sigma
 constexpr double kFarthestFocal = 3.0;  // times, either way
 
 bool changes(double from, double to) {
@@ -60,15 +61,20 @@ bool lens_is_sound(const MetricProblem& problem) {
 }
 
 /// Equations that were linearised elsewhere may promise too little where little is known: only with
-/// equations of its own is a place the minimum.
+/// equations of its own is a place the minimum, and from no other place is an answer.
 bool settle_at_minimum(MetricProblem& problem) {
-  for (int again = 0; again < kMostLinearisations; ++again) {
-    if (!problem.linearise_anew()) return false;
-    const int before = problem.iterations();
-    if (!problem.minimise(problem.noise()) || !lens_is_sound(problem)) return false;
-    if (problem.iterations() == before) return true;
+  auto promised = problem.linearise_anew();
+  double lowered = 0;
+  for (int again = 0; again < kMostLinearisations && promised; ++again) {
+    if (*promised < kSettledPromise) return true;
+    const double before = problem.cost();
+    if (problem.minimise(problem.noise()) == Minimisation::kNothing) return false;
+    if (!lens_is_sound(problem)) return false;
+    lowered = std::abs(problem.cost() - before);
+    promised = problem.linearise_anew();
   }
-  return problem.linearise_anew();
+  // To and fro about the minimum is at it; creeping, however slowly, is not.
+  return promised && *promised < kOfNoAccount && lowered < kOfNoAccount;
 }
 
 }  // namespace
@@ -76,7 +82,7 @@ bool settle_at_minimum(MetricProblem& problem) {
 bool minimise_with_noise(MetricProblem& problem) {
   MetricNoise noise = noise_at_start(problem.scene(), problem.options());
   for (int round = 1;; ++round) {
-    if (!problem.minimise(noise) || !lens_is_sound(problem)) return false;
+    if (problem.minimise(noise) == Minimisation::kNothing || !lens_is_sound(problem)) return false;
     if (round >= problem.options().noise_rounds) break;
     const MetricNoise seen = estimated_noise(problem);
     std::vector<bool> kept = agreeing(problem, seen);

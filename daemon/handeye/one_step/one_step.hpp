@@ -71,7 +71,7 @@ struct OneStepOptions {
   double huber{2.5};       ///< Huber's loss, in standard deviations: touches inliers hardly
   double reject{6.0};      ///< tracker poses beyond this norm (6 dof) are left out in the end
   int max_iterations{30};  ///< of one minimisation
-  int noise_rounds{4};     ///< at most, of minimising and estimating the noise
+  int noise_rounds{12};    ///< at most, of minimising and estimating the noise
 };
 
 struct OneStepResult {

@@ -24,6 +24,10 @@ struct Estimate {
   MaximumLikelihoodOptions options;                   ///< it was solved with
   ScaleMode scale{ScaleMode::kUnknown};               ///< of the eye's translations
   double time_ms{0};
+
+  /// False: the hand was looked up at an offset that nothing speaks for, and the answer is off by
+  /// what it moved in the true one, whatever is claimed of it.
+  bool has_time_offset() const { return correlation || stood_still; }
 };
 
 /// The hand at each frame, of whatever part, looked up at the given time offset; frames without are

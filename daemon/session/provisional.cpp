@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/provisional.hpp"
 
+#include <algorithm>
+
 #include "daemon/handeye/motion_facts.hpp"
 #include "daemon/session/estimate.hpp"
 #include "daemon/session/lens_sensitivity.hpp"
@@ -11,9 +13,12 @@ namespace {
 
 // The covariance is linearised: beyond this it means nothing, and the answer may be anywhere.
 constexpr double kMeaningful_deg = 5;
+constexpr double kHalvesDegrees = 6;  // of freedom, of halves_chi2
 
-/// Whether there is an answer at all in this motion, if only a rough one.
-bool is_answer(const Judgement& judgement) {
+/// Whether there is an answer at all in this motion, if only a rough one. In the first seconds
+/// there is none for want of a time offset: at a wrong one it looks better than it is.
+bool is_answer(const Estimate& so_far, const Judgement& judgement) {
+  if (!so_far.has_time_offset()) return false;
   const bool turned_enough = judgement.problem == MotionProblem::kNone ||
                              judgement.problem == MotionProblem::kUncertain ||
                              judgement.problem == MotionProblem::kFixedPoint;
@@ -45,11 +50,20 @@ void write_time_offset(const Estimate& so_far, Provisional& answer) {
   answer.time_offset_confidence = so_far.correlation->confidence;
 }
 
+/// By how much the covariance claims too little for what the eye's poses have in common: few points
+/// place them all. The halves tell, by Birge's ratio; where they differ by more than chance, their
+/// difference is in the judgement's covariance already.
+double widening(const Judgement& judgement) {
+  if (*judgement.halves_chi2 > JudgeOptions{}.halves_chi2_by_chance) return 1;
+  return std::max(1.0, *judgement.halves_chi2 / kHalvesDegrees);
+}
+
 void write_sigma(const ProvisionalSnapshot& snapshot, const Estimate& so_far,
-                 const Matrix6d& covariance, Provisional& answer) {
+                 const Judgement& judgement, Provisional& answer) {
   if (!snapshot.lens_given && hand_contradicts_lens(so_far.observations)) return;
-  answer.sigma_beside_lens = sigma_of(covariance);
-  if (snapshot.lens_covariance) answer.sigma = sigma_of(covariance + *snapshot.lens_covariance);
+  answer.sigma_beside_lens = sigma_of(judgement.covariance);
+  if (!snapshot.lens_covariance) return;
+  answer.sigma = sigma_of(widening(judgement) * judgement.covariance + *snapshot.lens_covariance);
 }
 
 }  // namespace
@@ -63,10 +77,10 @@ Provisional provisional(const ProvisionalSnapshot& snapshot) {
   const Judgement judgement =
       judge(so_far.observations, so_far.likelihood, judge_options(snapshot, so_far));
   answer.missing = judgement.missing;
-  if (!is_answer(judgement)) return answer;
+  if (!is_answer(so_far, judgement)) return answer;
   answer.solution = so_far.likelihood->solution;
   answer.turned_deg = turns_of(so_far);
-  write_sigma(snapshot, so_far, judgement.covariance, answer);
+  write_sigma(snapshot, so_far, judgement, answer);
   return answer;
 }
 

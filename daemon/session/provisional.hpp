@@ -27,17 +27,19 @@ struct ProvisionalSnapshot {
 
 /// The answer as it stands while collecting.
 struct Provisional {
-  std::int64_t frames{0};                   ///< it rests on
-  std::optional<HandEyeSolution> solution;  ///< nothing: none yet, or none to be shown
-  double time_offset_s{0};                  ///< meaningless without a sigma
+  std::int64_t frames{0};  ///< it rests on
+  /// Nothing: none yet, none to be shown, or the time offset is not found yet.
+  std::optional<HandEyeSolution> solution;
+  double time_offset_s{0};  ///< meaningless without a sigma
   std::optional<double> time_offset_sigma_s;
   double time_offset_confidence{0};  ///< 0..1, as TimeOffset's
-  /// Of hand_from_eye, the disagreement of two halves included. What an uncertain lens adds only a
-  /// whole answer finds: until it has found a lens that was not given there is none, then it is
-  /// added as it was there.
+  /// Of hand_from_eye, widened by as much as two halves differ more than they claim. What an
+  /// uncertain lens adds only a whole answer finds: until it has found a lens that was not given
+  /// there is none, then it is added as it was there.
   std::optional<MethodSigma> sigma;
-  /// The same without the lens's part: a whole answer is worth trying when this is small enough.
-  /// Nothing also where the hand contradicts the lens.
+  /// The same without the lens's part, and widened only where chance does not explain the halves,
+  /// for one step makes more of the images: a whole answer is worth trying when this is small
+  /// enough. Nothing also where the hand contradicts the lens.
   std::optional<MethodSigma> sigma_beside_lens;
   std::optional<MissingMotion> missing;                 ///< nothing: not known yet
   Eigen::Vector3d turned_deg{Eigen::Vector3d::Zero()};  ///< rms about the camera's x, y, z

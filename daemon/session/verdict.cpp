@@ -132,8 +132,7 @@ Reason reason_after(MotionProblem problem, const Evidence& evidence) {
   if (names_the_motion) return reason_of(problem);
   if (!lens_is_known(evidence)) return Reason::kLensUnobservable;
   // At a wrong offset the rest of the judgement means nothing.
-  const bool no_offset = !evidence.estimate.correlation && !evidence.estimate.stood_still;
-  if (no_offset || evidence.offset_jumped) {
+  if (!evidence.estimate.has_time_offset() || evidence.offset_jumped) {
     return Reason::kClockUnstable;
   }
   const auto seen = static_cast<double>(evidence.estimate.observations.size());

@@ -38,8 +38,8 @@ Pose one_axis_motion(double t) {
       exp_so3(Eigen::Vector3d(0.3 * std::sin(1.3 * t) + 0.05 * std::sin(3.1 * t), 0, 0)));
 }
 
-TrackedScene::TrackedScene(EyeMotion room_from_eye, int points)
-    : room_from_eye_(std::move(room_from_eye)) {
+TrackedScene::TrackedScene(EyeMotion room_from_eye, int points, unsigned seed)
+    : room_from_eye_(std::move(room_from_eye)), random_(seed) {
   std::uniform_real_distribution<double> side(-60, 60);
   std::uniform_real_distribution<double> depth(-10, 10);
   for (int i = 0; i < points; ++i) {

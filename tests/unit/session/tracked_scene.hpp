@@ -31,10 +31,10 @@ Pose free_motion(double time_s);
 /// The same place; turns about the camera's x only, about the middle of the scene.
 Pose one_axis_motion(double time_s);
 
-/// A bumpy surface of 120 x 120 mm. Noise of a fixed seed: 0.2 px; 0.06 deg and 0.15 mm per axis.
+/// A bumpy surface of 120 x 120 mm. Noise by the seed: 0.2 px; 0.06 deg and 0.15 mm per axis.
 class TrackedScene {
  public:
-  explicit TrackedScene(EyeMotion room_from_eye = free_motion, int points = 500);
+  explicit TrackedScene(EyeMotion room_from_eye = free_motion, int points = 500, unsigned seed = 7);
 
   /// In order of `index`: the noise is drawn as they come.
   TrackedFrame frame(std::int64_t index);
@@ -43,7 +43,7 @@ class TrackedScene {
  private:
   EyeMotion room_from_eye_;
   std::vector<Eigen::Vector3d> points_room_;
-  std::mt19937 random_{7};
+  std::mt19937 random_;
 };
 
 }  // namespace handeye::tracked

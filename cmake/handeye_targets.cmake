@@ -33,7 +33,7 @@ function(handeye_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE handeye_build_options ${ARG_LINKS})
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT daemon)
 endfunction()
 
 # handeye_test(NAME [TOGETHER] SOURCES ... LINKS ...): one GoogleTest program; every TEST in it is one ctest test. TOGETHER:

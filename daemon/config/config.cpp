@@ -78,6 +78,18 @@ void read_lcm(Section section, Config::Lcm& lcm) {
   section.reject_unknown_keys();
 }
 
+/// The controller, and whether it is ever asked for anything.
+void read_controller(Section& section, Config::Tracker& tracker) {
+  read_address(section, "controller", tracker.controller);
+  int port = tracker.command_port;
+  section.read("command_port", port, 1, 65535);
+  tracker.command_port = static_cast<std::uint16_t>(port);
+  section.read("start_tracking", tracker.start_tracking);
+  if (tracker.start_tracking && tracker.controller.empty()) {
+    section.fail("start_tracking", "needs the controller's address: set controller, too");
+  }
+}
+
 /// Whose word on the tracker's noise is taken.
 void read_noise(Section& section, Config::Tracker& tracker) {
   constexpr std::array sources{HandNoiseSource::kMeasured, HandNoiseSource::kEstimated,
@@ -97,7 +109,7 @@ void read_tracker(Section section, Config::Tracker& tracker) {
   read_address(section, "bind_address", tracker.bind_address);
   section.read("interface", tracker.interface);
   read_address(section, "multicast_group", tracker.multicast_group);
-  read_address(section, "controller", tracker.controller);
+  read_controller(section, tracker);
   section.read("body_id", tracker.body_id, 0, 999);
   read_noise(section, tracker);
   section.reject_unknown_keys();
@@ -135,7 +147,8 @@ void read_camera(Section section, const std::filesystem::path& directory, Config
   section.reject_unknown_keys();
 }
 
-void read_calibration(Section section, Config::Calibration& calibration) {
+void read_calibration(Section section, const std::filesystem::path& directory,
+                      Config::Calibration& calibration) {
   section.read("sigma_rotation_deg", calibration.wanted.rotation_deg, 1e-4, 90);
   section.read("sigma_translation_mm", calibration.wanted.translation_mm, 1e-4, 1000);
   section.read("min_duration_s", calibration.min_duration_s, 0, 600);
@@ -143,12 +156,21 @@ void read_calibration(Section section, Config::Calibration& calibration) {
   if (calibration.min_duration_s > calibration.max_duration_s) {
     section.fail("min_duration_s", "must not be above max_duration_s");
   }
+  section.read("keep", calibration.keep);
+  read_path(section, "store", directory, calibration.store);
   section.reject_unknown_keys();
 }
 
 void read_camera_pose(Section section, Config::CameraPose& camera_pose) {
   section.read("wait_ms", camera_pose.wait_ms, 0, 150);
   section.read("predict_ms", camera_pose.predict_ms, 0, 200);
+  section.reject_unknown_keys();
+}
+
+void read_service(Section section, Config::Service& service) {
+  section.read("realtime_priority", service.realtime_priority, 0, 99);
+  section.read("stuck_after_s", service.stuck_after_s, 0.5, 3600);
+  section.read("solver_stuck_after_s", service.solver_stuck_after_s, 0.5, 3600);
   section.reject_unknown_keys();
 }
 
@@ -159,8 +181,8 @@ void read_log(Section section, Config::Log& log) {
 }
 
 void reject_unknown_sections(const toml::table& root, const std::string& file) {
-  const std::set<std::string, std::less<>> known{"lcm",         "tracker",     "camera",
-                                                 "calibration", "camera_pose", "log"};
+  const std::set<std::string, std::less<>> known{"lcm",         "tracker", "camera", "calibration",
+                                                 "camera_pose", "service", "log"};
   for (const auto& [key, node] : root) {
     if (known.contains(key.str())) continue;
     const std::string meant = nearest_word(key.str(), known);
@@ -180,8 +202,9 @@ Config load_config(const std::filesystem::path& path) {
   read_lcm(Section(root, "lcm", file), config.lcm);
   read_tracker(Section(root, "tracker", file), config.tracker);
   read_camera(Section(root, "camera", file), path.parent_path(), config.camera);
-  read_calibration(Section(root, "calibration", file), config.calibration);
+  read_calibration(Section(root, "calibration", file), path.parent_path(), config.calibration);
   read_camera_pose(Section(root, "camera_pose", file), config.camera_pose);
+  read_service(Section(root, "service", file), config.service);
   read_log(Section(root, "log", file), config.log);
   return config;
 }

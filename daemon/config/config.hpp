@@ -17,6 +17,7 @@ struct Config {
   struct Lcm {
     std::string url{kDefaultLcmProvider};
     std::string prefix{kDefaultChannelPrefix};
+    bool operator==(const Lcm&) const = default;
   } lcm;
 
   struct Tracker {
@@ -25,10 +26,13 @@ struct Config {
     std::string interface;        ///< network interface to listen and join on, "eth1"; empty: all
     std::string multicast_group;  ///< empty: the tracker sends to this host alone
     std::string controller;       ///< address of the tracker's controller; empty: accept any
-    int body_id{0};               ///< the body on the scope, the wire's number
+    std::uint16_t command_port{50105};  ///< TCP port of the controller's command channel
+    bool start_tracking{false};         ///< ask the controller to track, where nothing comes
+    int body_id{0};                     ///< the body on the scope, the wire's number
     HandNoiseSource noise{HandNoiseSource::kMeasured};  ///< estimated where nothing is measured
     double noise_rotation_deg{0.06};                    ///< standard deviation per axis
     double noise_translation_mm{0.15};
+    bool operator==(const Tracker&) const = default;
   } tracker;
 
   struct Camera {
@@ -44,23 +48,38 @@ struct Config {
     std::filesystem::path intrinsics;
     IntrinsicsMode intrinsics_mode{IntrinsicsMode::kFixed};
     std::filesystem::path mask;  ///< white = usable; empty: found in the image
+    bool operator==(const Camera&) const = default;
   } camera;
 
   struct Calibration {
     WantedSigma wanted;
     double min_duration_s{8};
     double max_duration_s{30};
+    bool keep{true};              ///< the last accepted one over restarts, in
+    std::filesystem::path store;  ///< this file; empty: in systemd's state directory
+    bool operator==(const Calibration&) const = default;
   } calibration;
 
   /// CAMERA_POSE, once calibrated.
   struct CameraPose {
     double wait_ms{20};     ///< for the tracker's sample after a frame; then the hand is predicted
     double predict_ms{60};  ///< that far beyond the newest sample at most; 0: never
+    bool operator==(const CameraPose&) const = default;
   } camera_pose;
+
+  struct Service {
+    int realtime_priority{20};  ///< of the threads that receive, 1..99 (SCHED_RR); 0: as all others
+    double stuck_after_s{20};   ///< without progress a thread is; then no watchdog is fed
+    double solver_stuck_after_s{180};  ///< the same for threads that solve
+    bool operator==(const Service&) const = default;
+  } service;
 
   struct Log {
     std::string level{"info"};
+    bool operator==(const Log&) const = default;
   } log;
+
+  bool operator==(const Config&) const = default;
 };
 
 /// Reads a TOML file. Throws InputError when it cannot be read, UsageError for a mistake in it; the

@@ -52,6 +52,7 @@ std::string reason_advice(Reason reason, const Board& board);
 struct WantedSigma {
   double rotation_deg{0.3};
   double translation_mm{1.5};
+  bool operator==(const WantedSigma&) const = default;
 };
 
 /// Square roots of the traces of the rotation's and the translation's block of a covariance.

@@ -54,6 +54,8 @@ interface = "eth1"
 bind_address = "10.0.0.2"
 multicast_group = "239.0.0.5"
 controller = "10.0.0.9"
+command_port = 50106
+start_tracking = true
 body_id = 4
 noise = "given"
 noise_rotation_deg = 0.1
@@ -78,6 +80,8 @@ level = "debug"
   EXPECT_EQ(config.tracker.port, 5001);
   EXPECT_EQ(config.tracker.interface, "eth1");
   EXPECT_EQ(config.tracker.controller, "10.0.0.9");
+  EXPECT_EQ(config.tracker.command_port, 50106);
+  EXPECT_TRUE(config.tracker.start_tracking);
   EXPECT_EQ(config.tracker.body_id, 4);
   EXPECT_EQ(config.tracker.noise, HandNoiseSource::kGiven);
   EXPECT_DOUBLE_EQ(config.tracker.noise_translation_mm, 0.2);
@@ -96,6 +100,8 @@ TEST(Config, HasDefaultsForEverythingButTheIntrinsics) {
   const ConfigFile file("[camera]\nintrinsics = 'camera.json'\n");
   const Config config = load_config(file.path());
   EXPECT_EQ(config.tracker.port, 5000);
+  EXPECT_EQ(config.tracker.command_port, 50105);
+  EXPECT_FALSE(config.tracker.start_tracking) << "the tracker is never touched unless told";
   EXPECT_EQ(config.tracker.noise, HandNoiseSource::kMeasured);
   EXPECT_EQ(config.camera.driver, Config::Camera::Driver::kV4l2);
   EXPECT_EQ(config.lcm.prefix, kDefaultChannelPrefix);
@@ -126,6 +132,12 @@ TEST(Config, NamesLineAndKeyOfAMistake) {
   EXPECT_THAT(mistake_in(head + "[lcm]\nprefix = 'a.*'\n"), HasSubstr(":4: [lcm] prefix"));
   EXPECT_THAT(mistake_in(head + "[tracker]\ncontroller = 'localhost'\n"),
               HasSubstr("must be an IPv4 address"));
+  EXPECT_THAT(mistake_in(head + "[tracker]\ncommand_port = 0\n"),
+              HasSubstr(":4: [tracker] command_port: must be a whole number from 1 to 65535"));
+  EXPECT_THAT(mistake_in(head + "[tracker]\nstart_tracking = 1\n"),
+              HasSubstr(":4: [tracker] start_tracking: must be true or false"));
+  EXPECT_THAT(mistake_in(head + "[tracker]\nstart_tracking = true\n"),
+              HasSubstr(":4: [tracker] start_tracking: needs the controller's address"));
   EXPECT_THAT(mistake_in(head + "driver = 'webcam'\n"), HasSubstr("must be one of v4l2, lcm"));
   EXPECT_THAT(mistake_in("[camera]\n"), HasSubstr("[camera] intrinsics: is missing"));
   EXPECT_THAT(mistake_in(head + "[log]\nlevel = \n"), HasSubstr(":4")) << "not TOML at all";

@@ -132,8 +132,9 @@ double set_rate(const V4l2Device& device, double rate_hz) {
 }  // namespace
 
 std::variant<V4l2Stream, std::string> negotiate(const V4l2Device& device, const V4l2Wish& wish) {
-  if (const auto problem = adopt_signal(device)) return *problem;
+  // First, so that a change after the signal was read is not missed.
   subscribe_to_signal_changes(device);
+  if (const auto problem = adopt_signal(device)) return *problem;
 
   V4l2Wish wanted = wish;
   if (wanted.width == 0 || wanted.height == 0) {

@@ -80,8 +80,16 @@ int FakeDevice::request(unsigned long code, void* argument) {
       streaming_ = true;
       return 0;
     case VIDIOC_G_INPUT:
-    case VIDIOC_SUBSCRIBE_EVENT:
       return 0;
+    case VIDIOC_SUBSCRIBE_EVENT:
+      subscribed_ = true;
+      return 0;
+    case VIDIOC_QUERY_DV_TIMINGS:
+      if (!signal_unsettled) return ENOTTY;
+      if (subscribed_) events.push_back(V4L2_EVENT_SOURCE_CHANGE);
+      return 0;
+    case VIDIOC_S_DV_TIMINGS:
+      return signal_unsettled ? 0 : ENOTTY;
     case VIDIOC_DQEVENT:
       if (events.empty()) return ENOENT;
       as<v4l2_event>(argument).type = events.front();

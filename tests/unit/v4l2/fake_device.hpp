@@ -40,6 +40,7 @@ class FakeDevice {
   int failing_error{0};              ///< ... fails with this error
   short poll_events{0};              ///< reported by poll beside POLLIN
   std::deque<std::uint32_t> events;  ///< types of events that wait
+  bool signal_unsettled{false};      ///< it changes as soon as its timings have been read
 
   // What the driver did.
   std::size_t mapped() const { return mapped_; }
@@ -66,6 +67,7 @@ class FakeDevice {
 
   std::uint32_t fourcc_{0};
   bool streaming_{false};
+  bool subscribed_{false};
   std::size_t mapped_{0};
   std::deque<std::uint32_t> queued_;
   std::array<std::array<std::uint8_t, kBufferBytes>, kBuffers> memory_{};

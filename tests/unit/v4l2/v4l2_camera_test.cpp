@@ -197,6 +197,15 @@ TEST_F(V4l2Loss, IsNoticedWhenTheSignalChanges) {
   expect_lost_and_found();
 }
 
+/// Between the reading of its timings and the first frame nothing may be missed.
+TEST_F(V4l2Loss, IsNoticedWhenTheSignalChangesWhileOpening) {
+  fake_.signal_unsettled = true;
+  open();
+  fake_.frames.push_back(frame(0));
+  fake_.signal_unsettled = false;
+  expect_lost_and_found();
+}
+
 TEST_F(V4l2Loss, IsAssumedAfterSilence) {
   options_.silent_is_lost = std::chrono::milliseconds(0);
   open();

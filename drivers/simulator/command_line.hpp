@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/simulator/controller.hpp"
 #include "drivers/simulator/live.hpp"
 #include "drivers/simulator/world.hpp"
 
@@ -15,8 +16,10 @@ struct CommandLine {
 
   Command command{Command::kRun};
   SimulatorOptions simulator;
-  double duration_s{0};             ///< run: 0 = until told to stop
-  LiveOptions live;                 ///< run
+  double duration_s{0};  ///< run: 0 = until told to stop
+  LiveOptions live;      ///< run
+  /// run: plays the tracker's controller as well; nothing is tracked until it is told to.
+  std::optional<ControllerOptions> controller;
   std::filesystem::path recording;  ///< record
   std::optional<std::filesystem::path> camera_out;
   std::optional<std::filesystem::path> truth_out;

@@ -38,6 +38,7 @@ class LiveDevices {
         endoscope_(world),
         tracker_(world),
         sender_(options.tracker_host, options.tracker_port),
+        tracking_(options.tracking),
         bus_(options.lcm_url),
         frames_out_(bus_, Channels(options.channel_prefix).frame) {
     for (int i = 0; i < kFramesInFlight; ++i) empty_.put(std::make_unique<SimulatedFrame>());
@@ -59,6 +60,7 @@ class LiveDevices {
   EndoscopeDevice endoscope_;
   TrackerLink tracker_;
   UdpSender sender_;
+  std::function<bool()> tracking_;
   Bus bus_;
   Publisher<image_t> frames_out_;
   image_t message_{};
@@ -73,6 +75,8 @@ void LiveDevices::send_datagrams(const std::stop_token& stop) {
   SimulatedDatagram datagram;
   for (tracker_.next(datagram); datagram.measured_s < duration_s_; tracker_.next(datagram)) {
     if (!sleep_until(datagram.arrival_ns, stop)) return;
+    // What is not sent was counted all the same: the frame counter follows the synchronisation.
+    if (tracking_ && !tracking_()) continue;
     if (sender_.send(datagram.bytes)) ++datagrams_;
   }
 }

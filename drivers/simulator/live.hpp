@@ -16,6 +16,7 @@ struct LiveOptions {
   std::uint16_t tracker_port{5000};
   std::string lcm_url{kDefaultLcmProvider};
   std::string channel_prefix{kDefaultChannelPrefix};
+  std::function<bool()> tracking;  ///< asked for each datagram: is it sent? Empty: all are
 };
 
 /// Runs both devices in real time: datagrams over UDP at their arrival time, frames over LCM at

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <ctime>
 #include <exception>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -50,10 +51,18 @@ void write_extra_files(const CommandLine& line, const World& world) {
 
 DeviceCounts run(const CommandLine& line) {
   const StopSignals stop_signals;  // before any thread, which then inherits the mask
+  std::optional<Controller> controller;
+  LiveOptions live = line.live;
+  if (line.controller) {
+    controller.emplace(*line.controller);
+    live.tracking = [&controller] { return controller->tracking(); };
+    fmt::print(stderr, "handeye-sim: controller on TCP port {}, tracking is off\n",
+               controller->port());
+  }
   World world(line.simulator, 0);
   world.start_ns = monotonic_ns() + kLeadNs;
   write_extra_files(line, world);
-  return run_live(world, line.duration_s, line.live, [&] { return stop_signals.arrived(); });
+  return run_live(world, line.duration_s, live, [&] { return stop_signals.arrived(); });
 }
 
 DeviceCounts record(const CommandLine& line) {

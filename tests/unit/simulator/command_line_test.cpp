@@ -111,6 +111,29 @@ TEST(CommandLine, RefusesFaultsItDoesNotKnow) {
   }
 }
 
+TEST(CommandLine, PlaysAControllerWhereAsked) {
+  EXPECT_FALSE(parse({"run"})->controller.has_value());
+  const auto usual = parse({"run", "--controller"})->controller;
+  ASSERT_TRUE(usual.has_value());
+  EXPECT_EQ(usual->port, 50105);
+  EXPECT_EQ(usual->bind_address, "127.0.0.1");
+  EXPECT_FALSE(usual->fault.has_value());
+  const auto other = parse({"run", "--controller", "--controller-port", "0", "--controller-address",
+                            "0.0.0.0", "--controller-fault", "garbage"})
+                         ->controller;
+  EXPECT_EQ(other->port, 0);
+  EXPECT_EQ(other->bind_address, "0.0.0.0");
+  EXPECT_EQ(other->fault, ControllerFault::kGarbage);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"run", "--controller-port", "1"},
+           {"run", "--controller", "--controller-port", "65536"},
+           {"run", "--controller", "--controller-fault", "sulk"},
+           {"run", "--controller", "--controller-address", "x"},
+           {"record", "out", "--duration", "1", "--controller"}}) {
+    EXPECT_THROW(parse(words), UsageError) << words[1];
+  }
+}
+
 TEST(CommandLine, DrawsAnotherSeedWhereNoneIsGiven) {
   EXPECT_EQ(parse({"run", "--seed", "12"})->simulator.seed, 12U);
   EXPECT_NE(parse({"run"})->simulator.seed, parse({"run"})->simulator.seed);

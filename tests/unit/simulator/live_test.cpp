@@ -160,6 +160,30 @@ TEST_F(LiveTest, StopsWhenTold) {
   EXPECT_GT(counts.datagrams, 0U);
 }
 
+TEST_F(LiveTest, SendsDatagramsOnlyWhileTracking) {
+  world_.start_ns = monotonic_ns();
+  LiveOptions options = live_options();
+  int asked = 0;
+  // Off, on from the 11th datagram to the 20th, off again.
+  options.tracking = [&asked] { return ++asked > 10 && asked <= 20; };
+  DeviceCounts counts;
+  try {
+    counts = run_live(world_, 0.5, options, [] { return false; });
+  } catch (const InputError& error) {
+    GTEST_SKIP() << error.what();
+  }
+  EXPECT_EQ(asked, 30);
+  EXPECT_EQ(counts.datagrams, 10U);
+  const auto datagrams = listener_.waiting();
+  ASSERT_EQ(datagrams.size(), 10U);
+  dtrack::Parser parser;
+  dtrack::Frame first;
+  dtrack::Frame last;
+  parser.parse(datagrams.front(), first);
+  parser.parse(datagrams.back(), last);
+  EXPECT_EQ(last.number, first.number + 9) << "the counter goes on";
+}
+
 TEST_F(LiveTest, SaysWhichHostIsUnknown) {
   LiveOptions options = live_options();
   options.tracker_host = "no-such-host.invalid";

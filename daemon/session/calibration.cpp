@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "daemon/session/stopwatch.hpp"
+#include "daemon/sync/clock_hindsight.hpp"
 
 namespace handeye {
 namespace {
@@ -26,13 +27,6 @@ void write_lens(const Lens& lens, CalibrationResult& result) {
   result.camera = lens.camera;
   result.camera_source = lens.mode == IntrinsicsMode::kRefine ? "refined" : "estimated";
   result.lens = LensQuality{lens.sigma, lens.observable};
-}
-
-/// The samples that are there, without the room for more.
-PoseBuffer trimmed(const PoseBuffer& hand) {
-  PoseBuffer copy({.capacity = std::max<std::size_t>(hand.size(), 1)});
-  for (std::size_t i = 0; i < hand.size(); ++i) copy.push(hand.at(i));
-  return copy;
 }
 
 }  // namespace
@@ -77,7 +71,7 @@ Situation Calibration::situation() const {
 
 ProvisionalSnapshot Calibration::outline() const {
   return {.frames = thinned(eye_->current().frames, kFramesOnTheWay),
-          .hand = trimmed(hand_),
+          .hand = with_hindsight(hand_),
           .noise = options_.noise,
           .scale = eye_->scale(),
           .wanted = options_.start.wanted,
@@ -91,7 +85,7 @@ CalibrationSnapshot Calibration::snapshot() {
       .begun = begin_result(),
       .reconstruction = {},
       .scale = eye_->scale(),
-      .hand = trimmed(hand_),
+      .hand = with_hindsight(hand_),
       .hand_path = {hand_path_.room_from_hand().begin(), hand_path_.room_from_hand().end()},
       .images = images_};
   snapshot.reconstruction = reconstruct(snapshot.begun);

@@ -51,6 +51,7 @@ void HandStream::stamp(std::int64_t arrival_ns) {
     const ClockReading reading = clock_.observe(*device_s, arrival_ns, frame_.number);
     time_.timestamp_ns = reading.timestamp_ns;
     time_.doubtful_time = reading.doubtful;
+    if (!reading.doubtful) time_.clock_mapping = reading.mapping;
     lateness_ns_ = arrival_ns - reading.timestamp_ns;
   } else {
     // A datagram without the time that others carry: as late as the one before it.

@@ -66,11 +66,19 @@ ClockReading ClockModel::observe(double device_s, std::int64_t arrival_ns,
   residuals_s_.add(point.lateness_s - envelope_.at(point.device_s));
   const std::int64_t timestamp_ns = mapped_ns(point.device_s);
   const bool doubtful = !settled_ || std::abs(correction_s_) > options_.doubtful_s;
-  return {doubtful ? std::min(timestamp_ns, arrival_ns) : timestamp_ns, doubtful};
+  if (doubtful) return {std::min(timestamp_ns, arrival_ns), true};
+  return {.timestamp_ns = timestamp_ns, .mapping = mapping_at(point.device_s)};
 }
 
 std::int64_t ClockModel::mapped_ns(double device_s) const {
   return origin_ns_ + ns_from_seconds(device_s + envelope_.at(device_s) + correction_s_);
+}
+
+ClockMapping ClockModel::mapping_at(double device_s) const {
+  return {.device_ns = origin_ns_ + ns_from_seconds(device_s),
+          .lateness_ns = ns_from_seconds(envelope_.at(device_s)),
+          .slope = envelope_.slope(),
+          .run = runs_};
 }
 
 /// The seconds of the day, counted on from the last observation's day: the day is the one that the
@@ -89,6 +97,7 @@ void ClockModel::count_midnights(double days_passed_s) {
 
 void ClockModel::start(double device_s, std::int64_t arrival_ns) {
   started_ = true;
+  ++runs_;
   origin_ns_ = last_arrival_ns_ = arrival_ns;
   origin_device_s_ = last_device_s_ = device_s;
   envelope_.clear();

@@ -34,12 +34,22 @@ struct ClockModelOptions {
   double doubtful_s{0.001};  ///< while it lags behind by more than this, its answers are doubtful
 };
 
+/// The mapping as it was at one datum. Two of one run, a and b, are on one device clock: b's says
+/// that a was measured at a.device_ns + b.lateness_ns + b.slope (a.device_ns - b.device_ns).
+struct ClockMapping {
+  std::int64_t device_ns{0};    ///< of this datum, by the device's clock, near the host's
+  std::int64_t lateness_ns{0};  ///< of the line there; without the gliding of the stamps
+  double slope{0};
+  std::int32_t run{0};  ///< counts the beginnings of the model
+};
+
 struct ClockReading {
   std::int64_t timestamp_ns{0};  ///< of the measurement, host CLOCK_MONOTONIC
   /// Nobody vouches for the stamp: a clock may have jumped, or the mapping is only being found. It
   /// is never later than the arrival, and otherwise means nothing.
   bool doubtful{false};
   bool contradicts{false};  ///< doubtful, because a clock may have jumped or has just done so
+  ClockMapping mapping{};   ///< of what is not doubtful
 };
 
 /// Maps a device clock to the host's CLOCK_MONOTONIC (docs/math.md section 9): the lower envelope
@@ -97,6 +107,7 @@ class ClockModel {
   void glide(double device_s);
   void count_midnights(double days_passed_s);
   std::int64_t mapped_ns(double device_s) const;
+  ClockMapping mapping_at(double device_s) const;
 
   ClockModelOptions options_;
   bool started_{false};
@@ -119,6 +130,7 @@ class ClockModel {
   Point first_suspect_;
   int suspects_{0};  ///< in a row, as late as each other while both clocks run on
 
+  std::int32_t runs_{0};
   std::int64_t jumps_{0};
   std::int64_t before_last_jump_ns_{std::numeric_limits<std::int64_t>::min() / 2};
   std::int64_t last_jump_ns_{std::numeric_limits<std::int64_t>::min() / 2};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/geometry/pose.hpp"
+#include "daemon/sync/clock_model.hpp"
 
 namespace handeye {
 
@@ -22,6 +23,8 @@ struct HandSample {
   bool doubtful_time{false};
   /// Counts the clocks' jumps: samples of two epochs are not on one time line.
   std::int32_t clock_epoch{0};
+  /// What the time stamp comes from; nothing: from no device's clock.
+  std::optional<ClockMapping> clock_mapping;
 };
 
 /// Outcome of a look-up: ordinary results, not errors.

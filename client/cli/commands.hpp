@@ -25,5 +25,6 @@ void add_solve_command(CLI::App& app, Action& action);
 void add_onestep_command(CLI::App& app, Action& action);
 void add_intrinsics_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
+void add_tracker_command(CLI::App& app, Action& action);
 
 }  // namespace handeye::cli

@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
   add_onestep_command(app, action);
   add_intrinsics_command(app, action);
   add_compare_command(app, action);
+  add_tracker_command(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -35,23 +35,25 @@ _handeye_value() {
     --output) _handeye_files "$current" '*.json' ;;
     --save | --truth | --start) _handeye_files "$current" '*.json' ;;
     --intrinsics) _handeye_words 'fixed refine estimate' "$current" ;;
-    --camera | --config) _handeye_files "$current" ;;
+    --config) _handeye_files "$current" '*.toml' ;;
+    --camera) _handeye_files "$current" ;;
     --board) _handeye_words 'chessboard:9x6:4 charuco:8x6:6:4.5:DICT_4X4_50' "$current" ;;
     --motion) _handeye_words 'free translation rotation single-axis pivot static' "$current" ;;
     --scene) _handeye_words 'tissue plane bare' "$current" ;;
     --disturb) _handeye_words 'flicker highlights round blur missing instrument interlaced frozen dark' "$current" ;;
     --distortion) _handeye_words 'none inside' "$current" ;;
+    --controller-fault) _handeye_words 'refuse slow garbage error silent busy' "$current" ;;
     --scale) _handeye_words 'known unknown' "$current" ;;
     --method) _handeye_words "all $(_handeye_methods)" "$current" ;;
     --lcm-url) _handeye_words 'udpm://239.255.76.67:7667?ttl=0' "$current" ;;
-    --amplitude | --lens | --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --max-* | --*-noise) COMPREPLY=() ;;
+    --amplitude | --lens | --body | --sigma | --max-duration | --timeout | --duration | --count | --prefix | --port | --controller-port | --controller-address | --max-* | --*-noise) COMPREPLY=() ;;
     *) return 1 ;;
   esac
 }
 
 _handeye() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands='calibrate status watch cancel pose record replay solve onestep intrinsics compare'
+  local commands='calibrate status watch cancel pose record replay solve onestep intrinsics compare tracker'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
     _handeye_words "$commands --help --version" "$current"
@@ -68,6 +70,7 @@ _handeye() {
     solve) _handeye_files "$current" '*.csv' ;;
     record | intrinsics) _handeye_files "$current" ;;
     onestep | compare) _handeye_files "$current" '*.json' ;;
+    tracker) [ "$previous" = --controller ] || _handeye_words 'start stop status' "$current" ;;
   esac
 }
 

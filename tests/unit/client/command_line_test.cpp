@@ -29,7 +29,7 @@ void expect_failure(const Finished& finished, int exit_code) {
 TEST(CommandLine, EveryCommandHasAHelpText) {
   const std::string overview = run_handeye({"--help"}).out;
   for (const std::string command : {"calibrate", "status", "watch", "cancel", "pose", "record",
-                                    "replay", "solve", "onestep", "compare"}) {
+                                    "replay", "solve", "onestep", "compare", "tracker"}) {
     const Finished finished = run_handeye({command, "--help"});
     EXPECT_EQ(finished.exit_code, 0) << command;
     EXPECT_THAT(finished.out, HasSubstr("Usage: handeye " + command)) << command;
@@ -60,6 +60,12 @@ TEST(CommandLine, MistakesAreOneLineAndExitCode1) {
       {"status", "--prefix", "ROOM.*"},
       {"status", "--color", "pink"},
       {"replay"},
+      {"tracker"},
+      {"tracker", "strat"},
+      {"tracker", "start", "--controller", "artcontroller"},
+      {"tracker", "start", "--controller", "127.0.0.1", "--port", "0"},
+      {"tracker", "start", "--controller", "127.0.0.1", "--timeout", "0"},
+      {"tracker", "start", "--controller", "127.0.0.1", "--config", "handeyed.toml"},
       {"record"},
       {"compare", "only-one.json"},
       {"compare", "a.json", "b.json", "--max-rotation", "x"},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <poll.h>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,12 @@ namespace handeye {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
+
+namespace {
+
+constexpr milliseconds kFalseAlarmPause(1);
+
+}  // namespace
 
 V4l2Camera::V4l2Camera(V4l2CameraOptions options) : options_(std::move(options)) {}
 
@@ -51,16 +58,13 @@ GrabStatus V4l2Camera::grab(Frame& frame, milliseconds timeout) {
   if (!device_.is_open()) return GrabStatus::kLost;
   const auto deadline = steady_clock::now() + timeout;
   for (;;) {
-    const Ready ready = wait(deadline);
+    V4l2Filled filled;
+    const Ready ready = take_next(filled, deadline);
     if (ready == Ready::kFailed) return lost();
     if (ready == Ready::kNothing) {
       const bool silent = steady_clock::now() - last_frame_ > options_.silent_is_lost;
       return silent ? lost() : GrabStatus::kTimeout;
     }
-    V4l2Filled filled;
-    const int error = buffers_.take(device_, filled);
-    if (error == EAGAIN) continue;
-    if (error != 0) return lost();
     const bool good = convert(filled, frame);
     if (buffers_.give_back(device_, filled.index) != 0) return lost();
     last_frame_ = steady_clock::now();
@@ -68,7 +72,7 @@ GrabStatus V4l2Camera::grab(Frame& frame, milliseconds timeout) {
   }
 }
 
-V4l2Camera::Ready V4l2Camera::wait(steady_clock::time_point deadline) const {
+V4l2Camera::Ready V4l2Camera::take_next(V4l2Filled& filled, steady_clock::time_point deadline) {
   for (;;) {
     const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
     pollfd waiting{device_.descriptor(), POLLIN | POLLPRI, 0};
@@ -78,7 +82,15 @@ V4l2Camera::Ready V4l2Camera::wait(steady_clock::time_point deadline) const {
     if (ready == 0) return Ready::kNothing;
     if ((waiting.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return Ready::kFailed;
     if ((waiting.revents & POLLPRI) != 0 && signal_changed()) return Ready::kFailed;
-    if ((waiting.revents & POLLIN) != 0) return Ready::kFrame;
+    if ((waiting.revents & POLLIN) != 0) {
+      const int error = buffers_.take(device_, filled);
+      if (error == 0) return Ready::kFrame;
+      if (error != EAGAIN) return Ready::kFailed;
+    }
+    // A false alarm. Some drivers repeat it for ever: neither at full speed, nor beyond the
+    // deadline.
+    if (steady_clock::now() >= deadline) return Ready::kNothing;
+    std::this_thread::sleep_for(kFalseAlarmPause);
   }
 }
 

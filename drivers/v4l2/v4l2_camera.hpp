@@ -45,7 +45,7 @@ class V4l2Camera final : public Camera {
   enum class Ready { kFrame, kNothing, kFailed };
 
   std::optional<std::string> start();
-  Ready wait(std::chrono::steady_clock::time_point deadline) const;
+  Ready take_next(V4l2Filled& filled, std::chrono::steady_clock::time_point deadline);
   bool signal_changed() const;
   bool convert(const V4l2Filled& filled, Frame& frame);
   GrabStatus lost();

@@ -2,6 +2,7 @@
 #include "drivers/v4l2/v4l2_camera.hpp"
 
 #include <cerrno>
+#include <ctime>
 #include <poll.h>
 
 #include <gmock/gmock.h>
@@ -217,6 +218,25 @@ TEST_F(V4l2CameraTest, OtherEventsAreNoLoss) {
   fake_.frames.push_back(frame(0));
   fake_.events = {V4L2_EVENT_CTRL};
   expect_frame(0);
+}
+
+/// A driver that says for ever that there is a frame or an event, and there is none.
+TEST_F(V4l2CameraTest, FalseAlarmsCostNoProcessorTime) {
+  for (const short alarm : {short{POLLIN}, short{POLLPRI}}) {
+    open();
+    fake_.poll_events = alarm;
+    const auto processor_s = [] {
+      timespec time{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+      return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    };
+    const double before_s = processor_s();
+    EXPECT_EQ(camera_->grab(grabbed_, std::chrono::milliseconds(500)), GrabStatus::kTimeout);
+    EXPECT_LT(processor_s() - before_s, 0.25) << "of half a second of waiting";
+    fake_.poll_events = 0;
+    camera_.reset();
+    fake_.reset_stream();
+  }
 }
 
 TEST_F(V4l2CameraTest, SaysWhyItCannotOpen) {

@@ -48,6 +48,9 @@ Service::Service(const Config& config)
       tracker_reporter_(kTrackerSilentAfter_s),
       camera_reporter_(kCameraSilentAfter_s),
       started_ns_(monotonic_ns()) {
+  if (config.tracker.start_tracking) {
+    starter_.emplace(config.tracker, [this] { return tracker_.health().last_ns.load(); });
+  }
   bus_.subscribe<request_t>(channels_.request,
                             [this](const request_t& message) { on_request(message); });
   loop_.on_readable(bus_.file_descriptor(), [this] { bus_.handle(milliseconds(0)); });
@@ -63,6 +66,7 @@ void Service::run() {
   watch_.start();
   vision_.start();
   tracker_.start();
+  if (starter_) starter_->start();
   camera_.start();
   say_ready();
   publish_status();
@@ -180,6 +184,8 @@ status_t Service::status_message() {
   status.software_version = kVersion;
   status.uptime_s = seconds_between(started_ns_, now_ns);
   status.tracker = tracker_reporter_.report(tracker_.health(), now_ns);
+  const std::string starter = starter_ ? starter_->text() : "";
+  if (!starter.empty()) status.tracker.text += fmt::format("; {}", starter);
   status.camera = camera_reporter_.report(camera_.health(), now_ns);
   const std::string_view picture = picture_text(vision_.picture());
   if (status.camera.state == device_status_t::STREAMING && !picture.empty()) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include <handeye/request_t.hpp>
 #include <handeye/result_t.hpp>
@@ -13,6 +14,7 @@
 #include "daemon/service/event_loop.hpp"
 #include "daemon/service/service_options.hpp"
 #include "daemon/service/solver_thread.hpp"
+#include "daemon/service/tracker_starter.hpp"
 #include "daemon/service/tracker_thread.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/service/watch_thread.hpp"
@@ -55,6 +57,7 @@ class Service {
   Publisher<result_t> result_publisher_;
   Session session_;
   TrackerThread tracker_;
+  std::optional<TrackerStarter> starter_;  ///< where the configuration asks for it
   CameraThread camera_;
   VisionThread vision_;
   SolverThread solver_;

@@ -62,13 +62,13 @@ std::optional<MaximumLikelihoodResult> solve(std::span<const HandEyeObservation>
 
 }  // namespace
 
-Vector6d error_of_whole(const HalvesComparison& halves, const Matrix6d& of_whole) {
+Vector6d HalvesOfWhole::error_of_whole() const {
   // In units in which the difference's covariance is 1: a whole that adds up its halves has 1/4.
-  const Eigen::LLT<Matrix6d> unit(halves.covariance);
+  const Eigen::LLT<Matrix6d> unit(covariance);
   const Matrix6d half_way = unit.matrixL().solve(of_whole);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(
       unit.matrixL().solve(half_way.transpose()).eval());
-  const Vector6d along = eigen.eigenvectors().transpose() * unit.matrixL().solve(halves.difference);
+  const Vector6d along = eigen.eigenvectors().transpose() * unit.matrixL().solve(difference);
   const Vector6d share = 2.0 * eigen.eigenvalues().cwiseMax(0.0).cwiseMin(0.25);
   return unit.matrixL() * (eigen.eigenvectors() * share.cwiseProduct(along));
 }
@@ -81,16 +81,17 @@ HalvesComparison compare(const Pose& first, const Pose& second, const Matrix6d& 
   return comparison;
 }
 
-std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
-                                               const MaximumLikelihoodResult& result,
-                                               const MaximumLikelihoodOptions& solver) {
+std::optional<HalvesOfWhole> compare_halves(std::span<const HandEyeObservation> observations,
+                                            const MaximumLikelihoodResult& result,
+                                            const MaximumLikelihoodOptions& solver) {
   const Halves halves =
       halves_of(of_used_parts(observations, result), solver.account_for_correlation);
   const auto first = solve(halves.first, result, solver);
   const auto second = solve(halves.second, result, solver);
   if (!first || !second) return std::nullopt;
-  return compare(first->solution.hand_from_eye, second->solution.hand_from_eye,
-                 first->covariance + second->covariance);
+  return HalvesOfWhole{compare(first->solution.hand_from_eye, second->solution.hand_from_eye,
+                               first->covariance + second->covariance),
+                       result.covariance};
 }
 
 }  // namespace handeye

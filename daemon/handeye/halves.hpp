@@ -16,10 +16,17 @@ struct HalvesComparison {
   double chi2{0};       ///< its squared Mahalanobis distance: 6 degrees of freedom
 };
 
-/// What the difference means for the answer of the whole, whose covariance is `of_whole`: the
-/// standard error of the mean of two that differ by d is d/2. It is less along directions that the
-/// whole knows better than its halves together do, for there d is mostly the halves' own.
-Vector6d error_of_whole(const HalvesComparison& halves, const Matrix6d& of_whole);
+/// The halves of one whole: by the same estimator from the same data, for only compare_halves()
+/// makes them.
+struct HalvesOfWhole : HalvesComparison {
+  Matrix6d of_whole;  ///< covariance of the whole's answer, as it claims
+
+  /// What the difference means for the answer of the whole: the standard error of the mean of two
+  /// that differ by d is d/2. It is less along directions that the whole knows better than its
+  /// halves together do, for there d is mostly the halves' own. Of another estimator's answer,
+  /// which may claim to know anything better, it would mean nothing.
+  Vector6d error_of_whole() const;
+};
 
 /// Of two answers of their own, `covariance` that of their difference.
 HalvesComparison compare(const Pose& first, const Pose& second, const Matrix6d& covariance);
@@ -27,16 +34,16 @@ HalvesComparison compare(const Pose& first, const Pose& second, const Matrix6d& 
 /// Solves the first and the second half of each part where the observations are in order of time,
 /// which sets apart what slipped half-way; else every other pose. Parts that `result`, of the same
 /// observations, has left out are in neither. Nothing when a half does not determine an answer.
-std::optional<HalvesComparison> compare_halves(std::span<const HandEyeObservation> observations,
-                                               const MaximumLikelihoodResult& result,
-                                               const MaximumLikelihoodOptions& solver);
+std::optional<HalvesOfWhole> compare_halves(std::span<const HandEyeObservation> observations,
+                                            const MaximumLikelihoodResult& result,
+                                            const MaximumLikelihoodOptions& solver);
 
 /// The same by one_step, each half with its own frames, points and time offset; noise and lens are
 /// those that the whole found. `start`, `options`: that led to `whole`. Two threads, and the same
 /// answer every time.
-std::optional<HalvesComparison> compare_halves(const OneStepProblem& problem,
-                                               const MaximumLikelihoodResult& start,
-                                               const OneStepResult& whole,
-                                               const OneStepOptions& options);
+std::optional<HalvesOfWhole> compare_halves(const OneStepProblem& problem,
+                                            const MaximumLikelihoodResult& start,
+                                            const OneStepResult& whole,
+                                            const OneStepOptions& options);
 
 }  // namespace handeye

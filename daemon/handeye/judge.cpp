@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/Dense>
 
@@ -35,14 +36,22 @@ bool contradicts_itself(const MaximumLikelihoodResult& result) {
   return static_cast<double>(left_out) > kMaxContradicting * static_cast<double>(used + left_out);
 }
 
-/// An answer, and the halves that speak of it.
+/// An answer, and the halves that speak of it: its own, or another answer's to the same data.
 struct Weighed {
   const JudgedAnswer& answer;
-  std::optional<HalvesComparison> halves;
-  bool own_halves{true};  ///< false: another answer's, to the same data
+  std::optional<HalvesComparison> of_another{};
 
+  /// Nothing: there are none.
+  const HalvesComparison* halves() const {
+    if (answer.halves) return &*answer.halves;
+    return of_another ? &*of_another : nullptr;
+  }
   bool agrees(const JudgeOptions& options) const {
-    return own_halves && halves && halves->chi2 <= options.halves_chi2_by_chance;
+    return answer.halves && answer.halves->chi2 <= options.halves_chi2_by_chance;
+  }
+  /// Of the answer, where its halves differ by more than chance.
+  Vector6d error() const {
+    return answer.halves ? answer.halves->error_of_whole() : Vector6d(0.5 * of_another->difference);
   }
 };
 
@@ -86,12 +95,10 @@ bool scale_is_to_blame(const MaximumLikelihoodResult& result, const Weighed& wei
 Judgement worth(const Weighed& weighed, const JudgeOptions& options) {
   Judgement judgement;
   judgement.covariance = weighed.answer.covariance;
-  if (weighed.halves) {
-    judgement.halves_chi2 = weighed.halves->chi2;
-    if (weighed.halves->chi2 > options.halves_chi2_by_chance) {
-      const Vector6d error = weighed.own_halves
-                                 ? error_of_whole(*weighed.halves, weighed.answer.covariance)
-                                 : Vector6d(0.5 * weighed.halves->difference);
+  if (const HalvesComparison* halves = weighed.halves()) {
+    judgement.halves_chi2 = halves->chi2;
+    if (halves->chi2 > options.halves_chi2_by_chance) {
+      const Vector6d error = weighed.error();
       judgement.covariance += error * error.transpose();
     }
   }
@@ -129,7 +136,7 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const JudgeOptions& options) {
   Judgement judgement = worth(weighed, options);
   const bool enough = result.poses_used >= kMinPoses;
-  const bool two_halves = weighed.halves || result.poses_used < 2 * kMinHalf;
+  const bool two_halves = weighed.halves() != nullptr || result.poses_used < 2 * kMinHalf;
   if (enough && two_halves && suffices(judgement.covariance, result, weighed, options)) {
     judgement.problem = MotionProblem::kNone;
     return judgement;
@@ -146,9 +153,9 @@ Judgement judge(std::span<const HandEyeObservation> observations,
 }
 
 /// Nothing when a half is too short.
-std::optional<HalvesComparison> halves_of(std::span<const HandEyeObservation> observations,
-                                          const MaximumLikelihoodResult& result,
-                                          const JudgeOptions& options) {
+std::optional<HalvesOfWhole> halves_of(std::span<const HandEyeObservation> observations,
+                                       const MaximumLikelihoodResult& result,
+                                       const JudgeOptions& options) {
   if (result.poses_used < 2 * kMinHalf) return std::nullopt;
   return compare_halves(observations, result, options.solver);
 }
@@ -158,17 +165,24 @@ std::optional<HalvesComparison> halves_of(std::span<const HandEyeObservation> ob
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options) {
-  if (answer.halves) return judge(observations, result, Weighed{answer, answer.halves}, options);
-  return judge(observations, result,
-               Weighed{answer, halves_of(observations, result, options), false}, options);
+  if (!answer.halves) {
+    return judge(observations, result, Weighed{answer, halves_of(observations, result, options)},
+                 options);
+  }
+  if (answer.covariance.allFinite() && answer.halves->of_whole != answer.covariance) {
+    throw std::invalid_argument("an answer is judged by halves of its own only");
+  }
+  return judge(observations, result, Weighed{answer}, options);
 }
 
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const std::optional<MaximumLikelihoodResult>& result, const JudgeOptions& options) {
   if (result) {
-    const JudgedAnswer answer{result->solution.hand_from_eye, result->covariance, {}, {}};
-    return judge(observations, *result, Weighed{answer, halves_of(observations, *result, options)},
-                 options);
+    const JudgedAnswer answer{.hand_from_eye = result->solution.hand_from_eye,
+                              .covariance = result->covariance,
+                              .halves = halves_of(observations, *result, options),
+                              .log_scale_sigma = {}};
+    return judge(observations, *result, Weighed{answer}, options);
   }
   Judgement judgement;
   judgement.problem = motion_problem(observations, options.solver.noise, scale_of(options));

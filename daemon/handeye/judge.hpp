@@ -24,9 +24,9 @@ struct JudgeOptions {
 struct JudgedAnswer {
   Pose hand_from_eye{Pose::Identity()};
   Matrix6d covariance{Matrix6d::Zero()};  ///< of (w [rad], dt [mm]), as MaximumLikelihoodResult's
-  /// Its own; nothing: the likelihood's serve, and half their difference counts in full, for what
-  /// this answer claims says nothing of them.
-  std::optional<HalvesComparison> halves;
+  /// Its own, of a whole that has this covariance; nothing: the likelihood's serve, and half their
+  /// difference counts in full, for what this answer claims says nothing of them.
+  std::optional<HalvesOfWhole> halves;
   /// Its own; believed where its own halves agree. Nothing: from the likelihood's.
   std::optional<double> log_scale_sigma;
 };
@@ -55,6 +55,7 @@ Judgement judge(std::span<const HandEyeObservation> observations,
                 const JudgeOptions& options = {});
 
 /// The same of `answer`, which the same observations, and what else was seen, led to from `result`.
+/// Throws std::invalid_argument for halves of another whole.
 Judgement judge(std::span<const HandEyeObservation> observations,
                 const MaximumLikelihoodResult& result, const JudgedAnswer& answer,
                 const JudgeOptions& options = {});

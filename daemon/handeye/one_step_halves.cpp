@@ -62,10 +62,10 @@ OneStepOptions as_found(const OneStepResult& whole, OneStepOptions options) {
 
 }  // namespace
 
-std::optional<HalvesComparison> compare_halves(const OneStepProblem& problem,
-                                               const MaximumLikelihoodResult& start,
-                                               const OneStepResult& whole,
-                                               const OneStepOptions& options) {
+std::optional<HalvesOfWhole> compare_halves(const OneStepProblem& problem,
+                                            const MaximumLikelihoodResult& start,
+                                            const OneStepResult& whole,
+                                            const OneStepOptions& options) {
   const std::vector<bool> is_first = in_first_half(problem);
   const OneStepOptions held = as_found(whole, options);
   MaximumLikelihoodResult from = start;
@@ -77,8 +77,9 @@ std::optional<HalvesComparison> compare_halves(const OneStepProblem& problem,
   const auto first = solve(true);
   const auto second = second_half.get();
   if (!first || !second) return std::nullopt;
-  return compare(first->hand_from_eye, second->hand_from_eye,
-                 first->covariance + second->covariance);
+  return HalvesOfWhole{
+      compare(first->hand_from_eye, second->hand_from_eye, first->covariance + second->covariance),
+      whole.covariance};
 }
 
 }  // namespace handeye

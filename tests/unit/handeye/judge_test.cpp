@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/handeye/judge.hpp"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/handeye/synthetic.hpp"
@@ -117,6 +119,19 @@ TEST(Judge, LetsNoAnswerSilenceTheHalvesOfAnother) {
   EXPECT_EQ(judgement.problem, MotionProblem::kUncertain);
   EXPECT_GE(sigma_rotation_deg(judgement.covariance), 0.45) << "half the slip";
   EXPECT_EQ(judged_boaster_after_slip_of(0).problem, MotionProblem::kNone);
+}
+
+TEST(Judge, WeighsNoAnswerByTheHalvesOfAnother) {
+  const auto observations = after_slip_of(0);
+  const auto result = maximum_likelihood(observations);
+  ASSERT_TRUE(result);
+  JudgedAnswer answer{.hand_from_eye = result->solution.hand_from_eye,
+                      .covariance = result->covariance,
+                      .halves = compare_halves(observations, *result, {}),
+                      .log_scale_sigma = {}};
+  EXPECT_NO_THROW(judge(observations, *result, answer));
+  answer.covariance *= 1e-4;
+  EXPECT_THROW(judge(observations, *result, answer), std::invalid_argument);
 }
 
 TEST(Judge, BelievesItsOwnWordOfTheScaleWhereItsHalvesAgree) {

@@ -10,8 +10,9 @@ namespace {
 
 using synthetic::OneStepScene;
 
-HalvesComparison halves_that_differ(const Vector6d& difference, const Matrix6d& covariance) {
-  return {.difference = difference, .covariance = covariance};
+HalvesOfWhole halves_that_differ(const Vector6d& difference, const Matrix6d& covariance,
+                                 const Matrix6d& of_whole) {
+  return {{.difference = difference, .covariance = covariance}, of_whole};
 }
 
 Matrix6d some_covariance() {
@@ -26,7 +27,7 @@ TEST(ErrorOfWhole, IsHalfTheDifferenceWhereTheWholeAddsUpItsHalves) {
   const Vector6d difference = Vector6d::LinSpaced(-1, 2);
   const Matrix6d covariance = some_covariance();
   const Vector6d error =
-      error_of_whole(halves_that_differ(difference, covariance), 0.25 * covariance);
+      halves_that_differ(difference, covariance, 0.25 * covariance).error_of_whole();
   EXPECT_LT((error - 0.5 * difference).norm(), 1e-9);
 }
 
@@ -34,7 +35,7 @@ TEST(ErrorOfWhole, IsNeverMoreThanHalf) {
   const Vector6d difference = Vector6d::LinSpaced(-1, 2);
   const Matrix6d covariance = some_covariance();
   const Vector6d error =
-      error_of_whole(halves_that_differ(difference, covariance), 9.0 * covariance);
+      halves_that_differ(difference, covariance, 9.0 * covariance).error_of_whole();
   EXPECT_LT((error - 0.5 * difference).norm(), 1e-9);
 }
 
@@ -44,13 +45,13 @@ TEST(ErrorOfWhole, IsLittleAlongWhatTheHalvesHardlyKnow) {
   const Matrix6d covariance = unit.cwiseAbs2().asDiagonal();
   const Vector6d difference = 3 * unit;
   const Vector6d error =
-      error_of_whole(halves_that_differ(difference, covariance), 0.25 * Matrix6d::Identity());
+      halves_that_differ(difference, covariance, 0.25 * Matrix6d::Identity()).error_of_whole();
   EXPECT_NEAR(error[0], 1.5, 1e-9);
   EXPECT_LT(error[2], 0.05);
 }
 
 /// The camera turns in its clip half-way.
-std::optional<HalvesComparison> after_slip_of(double slip_deg, std::uint32_t seed) {
+std::optional<HalvesOfWhole> after_slip_of(double slip_deg, std::uint32_t seed) {
   OneStepScene scene = synthetic::one_step_scene({}, seed);
   const Eigen::Matrix3d slip = exp_so3({0, 0, rad_from_deg(slip_deg)});
   for (std::size_t k = scene.problem.frames.size() / 2; k < scene.problem.frames.size(); ++k) {

@@ -10,9 +10,6 @@
 namespace handeye {
 namespace {
 
-/// More tell hardly more, and take their time.
-constexpr std::size_t kMostSights = 3500;
-
 /// An interpolated pose is better than a sample (docs/math.md section 8).
 double variance_factor(double fraction) {
   return (1.0 - fraction) * (1.0 - fraction) + fraction * fraction;
@@ -44,7 +41,8 @@ WatchFrame make_watch_frame(const CameraModel& camera, const TrackedFrame& frame
   return made;
 }
 
-std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::size_t min_sights) {
+std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::size_t min_sights,
+                                     std::size_t most_sights) {
   std::map<std::int64_t, WatchTrack> by_feature;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     for (const WatchRay& seen : frames[k].rays) {
@@ -59,7 +57,7 @@ std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::si
                            [](const WatchTrack& track) { return track.sights.size(); });
   std::size_t sights = 0;
   const auto too_many = std::ranges::find_if(tracks, [&](const WatchTrack& track) {
-    return (sights += track.sights.size()) > kMostSights;
+    return (sights += track.sights.size()) > most_sights;
   });
   tracks.erase(too_many, tracks.end());
   return tracks;

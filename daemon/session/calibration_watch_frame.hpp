@@ -53,9 +53,13 @@ struct WatchTrack {
   std::vector<Sight> sights;                       ///< ordered by frame
 };
 
+/// More sights tell hardly more, and take their time.
+inline constexpr std::size_t kMostWatchSights = 3500;
+
 /// The features that at least `min_sights` of the frames show; of many those that were seen
 /// longest.
-std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::size_t min_sights);
+std::vector<WatchTrack> watch_tracks(std::span<const WatchFrame> frames, std::size_t min_sights,
+                                     std::size_t most_sights = kMostWatchSights);
 
 /// Lays each point where the cameras, as given, see it best. `room_from_eye`: frame by frame.
 void place_points(std::span<const Pose> room_from_eye, std::vector<WatchTrack>& tracks);

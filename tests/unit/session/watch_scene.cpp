@@ -90,6 +90,11 @@ Pose WatchScene::hand_from_eye() const {
   return now;
 }
 
+bool WatchScene::slides(std::int64_t feature_id) const {
+  return std::ranges::any_of(
+      points_, [&](const Point& point) { return point.feature_id == feature_id && point.sliding; });
+}
+
 HandSample WatchScene::sample_hand(double time_s, const Pose& room_from_hand) {
   HandSample sample;
   sample.timestamp_ns = ns(time_s - kTimeOffset_s);

@@ -58,6 +58,14 @@ class WatchScene {
   std::int64_t next(const WatchSink& sink);
 
   double time_s() const { return time_s_; }
+
+  // What only an onlooker knows.
+  Pose room_from_hand() const { return motion_.room_from_eye() * true_hand_from_eye_.inverse(); }
+  Pose hand_from_eye() const;
+  const TrackedFrame& frame() const { return frame_; }  ///< the last one
+  bool hand_hidden() const { return time_s_ < hidden_until_s_; }
+  /// Of the features in the last frame, whether it slides off on its own.
+  bool slides(std::int64_t feature_id) const;
   /// Time so far, since the head was turned, in which the hand moved (5 deg/s or 5 mm/s) and was
   /// seen, with the lens free.
   double moved_since_turn_s() const { return moved_since_turn_s_; }
@@ -72,7 +80,6 @@ class WatchScene {
   };
   void build_scene();
   void disturb();
-  Pose hand_from_eye() const;
   HandSample sample_hand(double time_s, const Pose& room_from_hand);
   void look(const Pose& room_from_eye);
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/simulator/command_line.hpp"
 
-#include <cstdlib>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "drivers/simulator/controller_command_line.hpp"
 #include "protocol/bus.hpp"
 #include "protocol/exit_codes.hpp"
 
@@ -32,9 +31,7 @@ struct RawOptions {
   std::vector<std::string> camera_faults;
   std::string timestamps{"ts"};
   std::optional<std::string> head_turn;
-  bool controller{false};
-  ControllerOptions controller_options;
-  std::optional<std::string> controller_fault;
+  RawControllerOptions controller;
 };
 
 void add_scene_options(CLI::App& command, SimulatorOptions& options, RawOptions& raw) {
@@ -152,31 +149,6 @@ void add_simulator_options(CLI::App& command, SimulatorOptions& options, RawOpti
   add_fault_options(command, options, raw);
 }
 
-void add_controller_options(CLI::App& run, RawOptions& raw) {
-  CLI::Option* controller = run.add_flag("--controller", raw.controller,
-                                         "Plays the tracker's controller as well: tracking is off "
-                                         "until 'dtrack2 tracking start' comes "
-                                         "over TCP");
-  run.add_option("--controller-port", raw.controller_options.port,
-                 "Its TCP port; 0: any free one, printed")
-      ->check(CLI::Range(0, 65535))
-      ->needs(controller)
-      ->capture_default_str();
-  run.add_option("--controller-address", raw.controller_options.bind_address,
-                 "Where it listens; 0.0.0.0: on every address of this machine")
-      ->check(CLI::ValidIPV4)
-      ->needs(controller)
-      ->capture_default_str();
-  run.add_option("--controller-fault", raw.controller_fault,
-                 "How it misbehaves: closes connections at once (refuse), answers byte by byte "
-                 "(slow), with something else (garbage), with an error (error) or not at all "
-                 "(silent), or another program has its control (busy)")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(kControllerFaultNames.begin(), kControllerFaultNames.end())))
-      ->needs(controller)
-      ->type_name("FAULT");
-}
-
 CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
   CLI::App* run = program.add_subcommand("run", "Both devices in real time");
   run->add_option("--duration", line.duration_s, "Seconds; 0: until SIGINT or SIGTERM")
@@ -191,7 +163,7 @@ CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
       ->capture_default_str();
   run->add_option("--prefix", line.live.channel_prefix, "Prefix of the LCM channel")
       ->capture_default_str();
-  add_controller_options(*run, raw);
+  add_controller_options(*run, raw.controller);
   add_simulator_options(*run, line.simulator, raw);
   return run;
 }
@@ -242,12 +214,7 @@ void complete(CommandLine& line, const RawOptions& raw, bool seed_given) {
   line.simulator.tracker_noise_deg = raw.noise_deg_mm.at(0);
   line.simulator.tracker_noise_mm = raw.noise_deg_mm.at(1);
   complete_faults(line.simulator, raw);
-  if (raw.controller) {
-    line.controller = raw.controller_options;
-    if (raw.controller_fault) {
-      line.controller->fault = controller_fault_from_name(*raw.controller_fault);
-    }
-  }
+  line.controller = controller_options(raw.controller);
   if (!raw.camera_out.empty()) line.camera_out = raw.camera_out;
   if (!raw.truth_out.empty()) line.truth_out = raw.truth_out;
   if (!is_valid_channel_prefix(line.live.channel_prefix)) {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdlib>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <handeye/version.hpp>
 #include <opencv2/core.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "daemon/config/config.hpp"
 #include "daemon/service/event_loop.hpp"
+#include "daemon/service/journal.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/service/thread_role.hpp"
 #include "protocol/exit_codes.hpp"
 
 namespace {
@@ -22,15 +20,6 @@ struct CommandLine {
   bool check_config{false};
 };
 
-void set_up_logging(const std::string& level) {
-  auto logger = spdlog::stderr_color_mt("handeyed");
-  logger->set_level(spdlog::level::from_str(level));
-  spdlog::set_default_logger(logger);
-  // Under systemd the journal adds time and name.
-  spdlog::set_pattern(std::getenv("JOURNAL_STREAM") != nullptr ? "%l: %v"
-                                                               : "%Y-%m-%d %H:%M:%S.%e %^%l%$: %v");
-}
-
 int run(const CommandLine& command_line) {
   const handeye::Config config = handeye::load_config(command_line.config_file);
   if (command_line.check_config) {
@@ -38,7 +27,9 @@ int run(const CommandLine& command_line) {
     fmt::print("{}: ok\n", command_line.config_file);
     return static_cast<int>(ExitCode::kOk);
   }
-  set_up_logging(config.log.level);
+  handeye::set_up_logging(config.log.level);
+  // Before any other thread starts, LCM's too: they inherit it.
+  handeye::take_role({.name = "handeyed"});
   handeye::EventLoop::block_signals({SIGTERM, SIGINT});
   // The threads of the service are the parallelism; OpenCV's own would steal from the sockets.
   cv::setNumThreads(1);

@@ -10,10 +10,13 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <type_traits>
 #include <utility>
+
+#include "daemon/service/heartbeat.hpp"
 
 namespace handeye {
 
@@ -21,12 +24,15 @@ namespace handeye {
 /// is let go goes on to its end, and its answer is thrown away: a job owns what it works on.
 class BackgroundThread {
  public:
-  /// `niceness`: 0 as everybody, up to 19 yields to them.
-  explicit BackgroundThread(int niceness = 0);
+  /// `name`: at most 15 characters. `niceness`: 0 as everybody, up to 19 yields to them.
+  explicit BackgroundThread(std::string name = "background", int niceness = 0);
   /// Waits for the running job; one that waits is not begun.
   ~BackgroundThread();
   BackgroundThread(const BackgroundThread&) = delete;
   BackgroundThread& operator=(const BackgroundThread&) = delete;
+
+  /// Beats when a job begins, rests when it is done.
+  const Heartbeat& heartbeat() const { return heartbeat_; }
 
   /// Whether a job is waiting or running.
   bool busy() const;
@@ -43,8 +49,9 @@ class BackgroundThread {
 
  private:
   void post(std::function<void()> job);
-  void work(const std::stop_token& stop, int niceness);
+  void work(const std::stop_token& stop);
 
+  Heartbeat heartbeat_;
   mutable std::mutex mutex_;
   std::condition_variable_any posted_;
   std::function<void()> job_;  ///< waiting

@@ -2,6 +2,9 @@
 #include "daemon/service/calibration_in_use.hpp"
 
 #include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
 
 namespace handeye {
 namespace {
@@ -34,6 +37,21 @@ ActiveCalibration active_calibration(const CalibrationResult& result,
           .time_offset_sigma_s = result.time_offset_sigma_s.value_or(0),
           .hand_noise = {.rotation_rad = rad_from_deg(noise.rotation_deg),
                          .translation_mm = noise.translation_mm}};
+}
+
+std::optional<std::string> misfit(const CalibrationResult& result, const CameraModel& camera) {
+  const CameraModel& its = result.camera;
+  if (its.width != camera.width || its.height != camera.height) {
+    return fmt::format("it is of a {}x{} camera, and the configured one is {}x{}", its.width,
+                       its.height, camera.width, camera.height);
+  }
+  // A lens that was found, or refined, differs from the configured one in any case.
+  if (result.lens) return std::nullopt;
+  const auto lens = [](const CameraModel& model) {
+    return std::tuple(model.fx, model.fy, model.cx, model.cy, model.distortion);
+  };
+  if (lens(its) == lens(camera)) return std::nullopt;
+  return "the camera's intrinsics have been changed since";
 }
 
 WatchedCalibration watched_calibration(const CalibrationResult& result,

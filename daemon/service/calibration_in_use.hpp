@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "daemon/config/config.hpp"
 #include "daemon/service/pose_publisher.hpp"
@@ -21,6 +22,10 @@ std::optional<std::int64_t> solved_ns(const Vintage& vintage, std::int64_t now_n
 /// For CAMERA_POSE, once it has a vintage. `now_ns`: CLOCK_MONOTONIC.
 ActiveCalibration active_calibration(const CalibrationResult& result,
                                      const Config::Tracker& tracker, std::int64_t now_ns);
+
+/// Why a calibration that was kept is none for this camera, as the configuration describes it: one
+/// line. Nothing: it is.
+std::optional<std::string> misfit(const CalibrationResult& result, const CameraModel& camera);
 
 /// For the watch, which trusts neither hand nor features more than is plausible, whatever the
 /// calibration found.

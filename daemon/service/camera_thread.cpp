@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/service/thread_role.hpp"
 #include "protocol/bus.hpp"
 
 namespace handeye {
@@ -43,8 +44,11 @@ CameraThread::CameraThread(std::unique_ptr<Camera> camera, const CameraModel& mo
   health_.set(device_status_t::WAITING, camera_->description());
 }
 
-void CameraThread::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+void CameraThread::start(int realtime_priority) {
+  thread_ = std::jthread([this, realtime_priority](const std::stop_token& stop) {
+    take_role({"camera", realtime_priority});
+    run(stop);
+  });
 }
 
 void CameraThread::run(const std::stop_token& stop) {
@@ -58,6 +62,7 @@ bool CameraThread::open(const std::stop_token& stop) {
   std::string last_problem;
   for (milliseconds wait = kFirstPause; !stop.stop_requested();
        wait = std::min(2 * wait, kLongestPause)) {
+    heartbeat_.beat();
     const auto problem = camera_->open();
     if (!problem) {
       health_.set(device_status_t::WAITING,
@@ -78,12 +83,13 @@ void CameraThread::stream(const std::stop_token& stop) {
   std::optional<bool> said_usable;
   clock_.restart();
   while (!stop.stop_requested()) {
+    heartbeat_.beat();
     if (next_ == nullptr) next_ = frames_.acquire();
     Frame& frame = next_ != nullptr ? *next_ : overflow_;
     const GrabStatus status = camera_->grab(frame, kGrabTimeout);
     count();
     if (status == GrabStatus::kLost || status == GrabStatus::kEnd) {
-      spdlog::warn("camera: lost {}", camera_->description());
+      spdlog::debug("camera: lost {}", camera_->description());
       health_.set(device_status_t::ABSENT,
                   fmt::format("{}: lost, trying again", camera_->description()));
       return;

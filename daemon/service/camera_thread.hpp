@@ -9,6 +9,7 @@
 #include "daemon/geometry/camera_model.hpp"
 #include "daemon/service/device_health.hpp"
 #include "daemon/service/exchange.hpp"
+#include "daemon/service/heartbeat.hpp"
 #include "daemon/service/pose_publisher.hpp"
 #include "daemon/sync/frame_clock.hpp"
 #include "drivers/camera.hpp"
@@ -25,11 +26,12 @@ class CameraThread {
   /// `frame_taken` is called in the camera's thread for every good frame.
   CameraThread(std::unique_ptr<Camera> camera, const CameraModel& model, FrameTaken frame_taken);
 
-  void start();
+  void start(int realtime_priority = 0);
 
   /// The consumer's end of the frames.
   Exchange<Frame>& frames() { return frames_; }
   const DeviceHealth& health() const { return health_; }
+  const Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   void run(const std::stop_token& stop);
@@ -54,6 +56,7 @@ class CameraThread {
   std::int64_t jumps_{0};  ///< of the camera's clock, as last said
   std::int64_t wrong_size_{0};
   std::int64_t wrong_time_{0};
+  Heartbeat heartbeat_;
   std::jthread thread_;
 };
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service/service.hpp"
 
+#include <cstdlib>
+
 #include <fmt/format.h>
-#include <handeye/version.hpp>
 #include <spdlog/spdlog.h>
-#include <systemd/sd-daemon.h>
 
 #include "daemon/service/calibration_in_use.hpp"
 #include "daemon/service/camera_factory.hpp"
+#include "daemon/service/journal.hpp"
 #include "daemon/service/status_message.hpp"
 #include "daemon/session/result_message.hpp"
 
@@ -20,9 +21,8 @@ constexpr milliseconds kStatusPeriod{200};
 constexpr double kTrackerSilentAfter_s = 1;
 constexpr double kCameraSilentAfter_s = 1;
 
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
-}
+// For a slow disk, when the daemon is told to stop.
+constexpr std::chrono::seconds kStoringPatience{5};
 
 }  // namespace
 
@@ -36,7 +36,8 @@ Service::Service(const Config& config)
       session_({.body_id = config.tracker.body_id,
                 .wanted = config.calibration.wanted,
                 .max_duration_s = config.calibration.max_duration_s}),
-      tracker_(config.tracker, pose_options(config.camera_pose), bus_, channels_),
+      tracker_(config.tracker, pose_options(config.camera_pose), bus_, channels_,
+               passed_tracker_socket()),
       camera_(make_camera(config, camera_files_.model), camera_files_.model,
               [this](const FrameStamp& stamp) { tracker_.frame_taken(stamp); }),
       vision_(camera_.frames(), bus_, vision_options(config, camera_files_, channels_)),
@@ -47,7 +48,8 @@ Service::Service(const Config& config)
              }),
       tracker_reporter_(kTrackerSilentAfter_s),
       camera_reporter_(kCameraSilentAfter_s),
-      started_ns_(monotonic_ns()) {
+      started_ns_(monotonic_ns()),
+      store_(store_file(config.calibration, std::getenv("STATE_DIRECTORY"))) {
   if (config.tracker.start_tracking) {
     starter_.emplace(config.tracker, [this] { return tracker_.health().last_ns.load(); });
   }
@@ -55,31 +57,81 @@ Service::Service(const Config& config)
                             [this](const request_t& message) { on_request(message); });
   loop_.on_readable(bus_.file_descriptor(), [this] { bus_.handle(milliseconds(0)); });
   loop_.on_readable(solver_.wake_up().file_descriptor(), [this] { on_solver_events(); });
-  loop_.every(kStatusPeriod, [this] { publish_status(); });
+  loop_.every(kStatusPeriod, [this] {
+    all_well_ = hearts_.check(monotonic_ns());
+    publish_status();
+  });
+  if (const auto period = SystemdLink::feeding_period()) {
+    loop_.every(*period, [this] { feed_watchdog(); });
+  }
+  listen_to_threads();
   for (const int signal : {SIGTERM, SIGINT}) {
     loop_.on_signal(signal, [this] { loop_.exit(); });
   }
 }
 
 void Service::run() {
+  restore();
   solver_.start();
   watch_.start();
   vision_.start();
-  tracker_.start();
+  tracker_.start(config_.service.realtime_priority);
   if (starter_) starter_->start();
-  camera_.start();
+  camera_.start(config_.service.realtime_priority);
   say_ready();
   publish_status();
+  if (in_use_) publish_result();
   loop_.run();
-  sd_notify(0, "STOPPING=1");
+  SystemdLink::say_stopping();
   spdlog::info("stopping");
+  if (stored_.valid()) stored_.wait_for(kStoringPatience);
 }
 
 void Service::say_ready() {
-  spdlog::info("ready: tracker on UDP port {}, camera {}, LCM {} with prefix {}", tracker_.port(),
-               camera_.health().state().second, config_.lcm.url, config_.lcm.prefix);
-  sd_notifyf(0, "READY=1\nSTATUS=tracker on port %d, prefix %s", tracker_.port(),
-             config_.lcm.prefix.c_str());
+  SystemdLink::say_ready();
+  log_event(Event::kReady,
+            fmt::format("ready: tracker on UDP port {}, camera {}, LCM {} with prefix {}",
+                        tracker_.port(), camera_.health().state().second, config_.lcm.url,
+                        config_.lcm.prefix));
+}
+
+/// What was accepted before a restart, unless that is not wanted or not of this camera.
+void Service::restore() {
+  if (!config_.calibration.keep) {
+    store_.remove();
+    store_ = CalibrationStore({});
+    return;
+  }
+  if (store_.file().empty()) {
+    spdlog::info(
+        "an accepted calibration will not survive a restart: neither [calibration] store "
+        "nor systemd's StateDirectory= says where to keep it");
+  }
+  auto result = store_.load(realtime_us());
+  if (!result) return;
+  if (const auto problem = misfit(*result, camera_files_.model)) {
+    return log_not_used(*result, *problem);
+  }
+  log_restored(*result);
+  use(*result);
+  result_since_ns_ = monotonic_ns();
+  session_.on_restored(std::move(*result));
+}
+
+void Service::listen_to_threads() {
+  const double limit_s = config_.service.stuck_after_s;
+  hearts_.add("tracker", tracker_.heartbeat(), limit_s);
+  hearts_.add("camera", camera_.heartbeat(), limit_s);
+  hearts_.add("vision", vision_.heartbeat(), limit_s);
+  hearts_.add("watch", watch_.heartbeat(), limit_s);
+  const double solver_limit_s = config_.service.solver_stuck_after_s;
+  hearts_.add("solver", solver_.heartbeat(), solver_limit_s);
+  hearts_.add("attempts", solver_.attempts_heartbeat(), solver_limit_s);
+  hearts_.add("final answer", solver_.final_answer_heartbeat(), solver_limit_s);
+}
+
+void Service::feed_watchdog() {
+  if (all_well_) SystemdLink::feed_watchdog();
 }
 
 void Service::on_request(const request_t& message) {
@@ -122,10 +174,7 @@ void Service::carry_out(Session::Command command, const Request& request) {
 
 void Service::start_calibration() {
   const StartOptions& start = *session_.current();
-  spdlog::info(
-      "calibration {}: collecting, body {}, {}, wanted sigma {} deg and {} mm, at most {} s",
-      start.request_id, start.body_id, start.board ? to_string(*start.board) : "no board",
-      start.wanted.rotation_deg, start.wanted.translation_mm, start.max_duration_s);
+  log_started(start);
   collecting_since_ns_ = monotonic_ns();
   const std::uint64_t calibration = vision_.begin_collecting(start.board);
   tracker_.begin_collecting(start.body_id, calibration);
@@ -147,12 +196,14 @@ void Service::on_solver_events() {
 
 void Service::on_result(CalibrationResult result) {
   end_collecting();
-  spdlog::info("calibration {}: {} {}", result.request_id,
-               result.verdict == Verdict::kAccepted ? "accepted" : "not accepted",
-               reason_word(result.reason));
-  if (result.verdict == Verdict::kAccepted) activate(result);
+  result.vintage = Vintage{.solved_utime = realtime_us(), .age_s = 0};
+  result_since_ns_ = monotonic_ns();
+  log_result(result);
+  const bool accepted = result.verdict == Verdict::kAccepted;
+  if (accepted) use(result);
   session_.on_result(std::move(result));
   publish_result();
+  if (accepted) keep(*session_.last_result());
 }
 
 void Service::end_collecting() {
@@ -160,56 +211,25 @@ void Service::end_collecting() {
   vision_.end_collecting();
 }
 
-void Service::activate(const CalibrationResult& result) {
-  tracker_.use(active_calibration(result, config_.tracker, monotonic_ns()));
-  calibrated_request_id_ = result.request_id;
+void Service::use(const CalibrationResult& result) {
+  in_use_ = active_calibration(result, config_.tracker, monotonic_ns());
+  tracker_.use(*in_use_);
   watch_.watch(result.request_id, watched_calibration(result, config_.tracker));
   vision_.begin_watching();
 }
 
+void Service::keep(const CalibrationResult& result) {
+  if (store_.file().empty()) return;
+  // An older one that still waits is overtaken: the last one counts.
+  stored_ = storing_.run([store = store_, result] { return store.save(result); });
+}
+
 void Service::publish_result() {
   result_t message = to_message(*session_.last_result());
+  if (message.age_s >= 0) {
+    message.age_s += 1e-9 * static_cast<double>(monotonic_ns() - result_since_ns_);
+  }
   if (!result_publisher_.publish(message)) spdlog::warn("RESULT could not be sent");
-}
-
-void Service::publish_status() {
-  status_t message = status_message();
-  status_publisher_.publish(message);
-}
-
-status_t Service::status_message() {
-  const std::int64_t now_ns = monotonic_ns();
-  status_t status{};
-  status.protocol_version = request_t::VERSION;
-  status.software_version = kVersion;
-  status.uptime_s = seconds_between(started_ns_, now_ns);
-  status.tracker = tracker_reporter_.report(tracker_.health(), now_ns);
-  const std::string starter = starter_ ? starter_->text() : "";
-  if (!starter.empty()) status.tracker.text += fmt::format("; {}", starter);
-  status.camera = camera_reporter_.report(camera_.health(), now_ns);
-  const std::string_view picture = picture_text(vision_.picture());
-  if (status.camera.state == device_status_t::STREAMING && !picture.empty()) {
-    status.camera.text += fmt::format(": {}", picture);
-  }
-  status.tracked_bodies = tracker_.tracked_bodies();
-  write_session(session_, status);
-  write_no_progress(status);
-  if (session_.state() == SessionState::kCollecting || session_.state() == SessionState::kSolving) {
-    const StartOptions& start = *session_.current();
-    write_progress(solver_.progress(),
-                   {.wanted = start.wanted,
-                    .min_duration_s = config_.calibration.min_duration_s,
-                    .max_duration_s = start.max_duration_s,
-                    .elapsed_s = seconds_between(collecting_since_ns_, now_ns)},
-                   status);
-    status.features_tracked = vision_.features_tracked();
-    status.frames_collected = static_cast<std::int32_t>(vision_.frames_collected());
-  }
-  status.calibrated = calibrated_request_id_ != 0;
-  status.calibration_request_id = calibrated_request_id_;
-  write_watch(watch_.status(now_ns), status);
-  status.undecodable = static_cast<std::int64_t>(bus_.undecodable());
-  return status;
 }
 
 }  // namespace handeye

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <optional>
 
 #include <handeye/request_t.hpp>
@@ -10,10 +11,15 @@
 #include <handeye/status_t.hpp>
 
 #include "daemon/config/config.hpp"
+#include "daemon/service/background_thread.hpp"
+#include "daemon/service/calibration_store.hpp"
 #include "daemon/service/camera_thread.hpp"
 #include "daemon/service/event_loop.hpp"
+#include "daemon/service/heart_monitor.hpp"
+#include "daemon/service/news.hpp"
 #include "daemon/service/service_options.hpp"
 #include "daemon/service/solver_thread.hpp"
+#include "daemon/service/systemd_link.hpp"
 #include "daemon/service/tracker_starter.hpp"
 #include "daemon/service/tracker_thread.hpp"
 #include "daemon/service/vision_thread.hpp"
@@ -42,10 +48,15 @@ class Service {
   void on_solver_events();
   void on_result(CalibrationResult result);
   void end_collecting();
-  void activate(const CalibrationResult& result);
+  void restore();
+  void use(const CalibrationResult& result);
+  void keep(const CalibrationResult& result);
   void publish_result();
+  void listen_to_threads();
+  void feed_watchdog();
   void publish_status();
   status_t status_message();
+  void write_devices(std::int64_t now_ns, status_t& status);
   void say_ready();
 
   Config config_;
@@ -64,9 +75,18 @@ class Service {
   WatchThread watch_;
   DeviceStatusReporter tracker_reporter_;
   DeviceStatusReporter camera_reporter_;
+  DeviceNews tracker_news_{"tracker"};
+  DeviceNews camera_news_{"camera"};
   std::int64_t started_ns_;
   std::int64_t collecting_since_ns_{0};
-  std::int64_t calibrated_request_id_{0};
+  std::int64_t result_since_ns_{0};  ///< when the last result's age was that of its vintage
+  std::optional<ActiveCalibration> in_use_;
+  SystemdLink systemd_;
+  HeartMonitor hearts_;
+  bool all_well_{true};  ///< no thread is stuck
+  CalibrationStore store_;
+  std::future<bool> stored_;
+  BackgroundThread storing_{"storing"};  ///< a disk may take its time
 };
 
 }  // namespace handeye

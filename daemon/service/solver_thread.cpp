@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "daemon/service/solver_thread_running.hpp"
+#include "daemon/service/thread_role.hpp"
 
 namespace handeye {
 namespace {
@@ -42,10 +43,14 @@ SolverThread::SolverThread(BoundedQueue<HandItem>& hand, Exchange<TrackedItem>& 
       options_(options),
       commands_(64),
       events_(64),
-      attempts_(kBackgroundNiceness) {}
+      attempts_("attempts", kBackgroundNiceness),
+      final_answer_("final answer") {}
 
 void SolverThread::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    take_role({.name = "solver"});
+    run(stop);
+  });
 }
 
 void SolverThread::begin(const StartOptions& options, std::uint64_t calibration) {
@@ -58,6 +63,7 @@ void SolverThread::begin(const StartOptions& options, std::uint64_t calibration)
 
 void SolverThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    heartbeat_.beat();
     const auto command = commands_.pop(kWait);
     if (!command) forget_leftovers();
     if (command && command->kind == Command::Kind::kBegin) calibrate(*command, stop);
@@ -126,6 +132,7 @@ void SolverThread::take_rest(Running& running, const std::stop_token& stop) {
 
 /// What was asked for since the last time.
 void SolverThread::hear(Running& running) {
+  heartbeat_.beat();
   while (const auto command = commands_.pop()) {
     running.finish_asked |= command->kind == Command::Kind::kFinish;
     running.cancel_asked |= command->kind == Command::Kind::kCancel;

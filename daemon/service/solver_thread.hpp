@@ -10,6 +10,7 @@
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/exchange.hpp"
 #include "daemon/service/hand_item.hpp"
+#include "daemon/service/heartbeat.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/service/wake_up.hpp"
 #include "daemon/session/calibration.hpp"
@@ -54,6 +55,11 @@ class SolverThread {
   std::optional<Event> next_event() { return events_.pop(); }
   CalibrationProgress progress() const;
 
+  const Heartbeat& heartbeat() const { return heartbeat_; }
+  /// Of the threads behind it: attempts, and the final answer.
+  const Heartbeat& attempts_heartbeat() const { return attempts_.heartbeat(); }
+  const Heartbeat& final_answer_heartbeat() const { return final_answer_.heartbeat(); }
+
  private:
   struct Command {
     enum class Kind { kBegin, kFinish, kCancel } kind{Kind::kBegin};
@@ -88,6 +94,7 @@ class SolverThread {
   WakeUp wake_up_;
   mutable std::mutex progress_mutex_;
   CalibrationProgress progress_;
+  Heartbeat heartbeat_;
   BackgroundThread attempts_;
   BackgroundThread final_answer_;  ///< does not wait for what the other one is at
   std::jthread thread_;

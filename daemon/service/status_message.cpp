@@ -180,6 +180,18 @@ void write_progress(const CalibrationProgress& progress, const ProgressTerms& te
   write_provisional(progress.provisional, status);
 }
 
+void write_calibration(const std::optional<ActiveCalibration>& calibration, std::int64_t now_ns,
+                       status_t& status) {
+  status.calibrated = calibration.has_value();
+  status.calibration_age_s = -1;
+  if (!calibration) return;
+  status.calibration_request_id = calibration->request_id;
+  status.calibration_restored = calibration->restored;
+  if (calibration->accepted_ns) {
+    status.calibration_age_s = 1e-9 * static_cast<double>(now_ns - *calibration->accepted_ns);
+  }
+}
+
 std::int32_t watch_code(WatchState state) {
   switch (state) {
     case WatchState::kOff:

@@ -7,6 +7,7 @@
 #include <handeye/request_t.hpp>
 #include <handeye/status_t.hpp>
 
+#include "daemon/service/pose_publisher.hpp"
 #include "daemon/session/calibration_watch.hpp"
 #include "daemon/session/progress.hpp"
 #include "daemon/session/session.hpp"
@@ -36,6 +37,10 @@ void write_progress(const CalibrationProgress& progress, const ProgressTerms& te
 
 /// Writes that none is running: nothing is known.
 void write_no_progress(status_t& status);
+
+/// Writes which calibration is in use, and how old it is.
+void write_calibration(const std::optional<ActiveCalibration>& calibration, std::int64_t now_ns,
+                       status_t& status);
 
 /// Writes whether the calibration in use still holds.
 void write_watch(const WatchStatus& watch, status_t& status);

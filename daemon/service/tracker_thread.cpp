@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/service/thread_role.hpp"
 #include "daemon/session/pose_message.hpp"
 
 namespace handeye {
@@ -28,7 +29,8 @@ constexpr std::size_t kFrameStamps = 256;
 // Bodies beyond are tracked and published, only STATUS does not list them.
 constexpr std::int32_t kBodiesInStatus = 64;
 
-dtrack::ReceiverOptions receiver_options(const Config::Tracker& config) {
+dtrack::ReceiverOptions receiver_options(const Config::Tracker& config,
+                                         std::optional<int> passed_socket) {
   dtrack::ReceiverOptions options;
   options.port = config.port;
   options.bind_address = config.bind_address;
@@ -36,6 +38,7 @@ dtrack::ReceiverOptions receiver_options(const Config::Tracker& config) {
   options.multicast_group = config.multicast_group;
   options.source_address = config.controller;
   options.controller_address = config.controller;
+  options.passed_descriptor = passed_socket;
   return options;
 }
 
@@ -43,9 +46,9 @@ dtrack::ReceiverOptions receiver_options(const Config::Tracker& config) {
 
 TrackerThread::TrackerThread(const Config::Tracker& config,
                              const PosePublisherOptions& camera_poses, Bus& bus,
-                             const Channels& channels)
+                             const Channels& channels, std::optional<int> passed_socket)
     : config_(config),
-      receiver_(receiver_options(config)),
+      receiver_(receiver_options(config, passed_socket)),
       hand_stream_(config.body_id),
       frame_publisher_(bus, channels.tracker),
       datagram_publisher_(bus, channels.datagram),
@@ -58,10 +61,23 @@ TrackerThread::TrackerThread(const Config::Tracker& config,
       frame_stamps_(kFrameStamps) {
   health_.set(device_status_t::WAITING,
               fmt::format("waiting for packets on port {}", receiver_.port()));
+  if (passed_socket) say_taken_over();
 }
 
-void TrackerThread::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+void TrackerThread::say_taken_over() const {
+  spdlog::info("tracker: systemd's socket on port {}, {} datagrams from before are dropped",
+               receiver_.port(), receiver_.counters().stale);
+  if (config_.port != 0 && config_.port != receiver_.port()) {
+    spdlog::warn("tracker: the configuration says port {}, systemd's socket has {}", config_.port,
+                 receiver_.port());
+  }
+}
+
+void TrackerThread::start(int realtime_priority) {
+  thread_ = std::jthread([this, realtime_priority](const std::stop_token& stop) {
+    take_role({"tracker", realtime_priority});
+    run(stop);
+  });
 }
 
 void TrackerThread::begin_collecting(int body_id, std::uint64_t calibration) {
@@ -74,6 +90,7 @@ void TrackerThread::end_collecting() {
 
 void TrackerThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    heartbeat_.beat();
     wait_for_work();
     receiver_.receive(milliseconds(0), [this](const Datagram& datagram) { take(datagram); });
     while (const auto calibration = calibrations_.pop()) pose_publisher_.use(*calibration);
@@ -133,7 +150,6 @@ void TrackerThread::count_datagram() {
   const dtrack::ReceiverCounters& received = receiver_.counters();
   const dtrack::ParseCounters& parsed = hand_stream_.counters();
   if (health_.last_ns == 0) {
-    spdlog::info("tracker: first packet on port {}", receiver_.port());
     health_.set(device_status_t::STREAMING, fmt::format("port {}", receiver_.port()));
   }
   health_.last_ns = monotonic_ns();

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -15,6 +16,7 @@
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/device_health.hpp"
 #include "daemon/service/hand_item.hpp"
+#include "daemon/service/heartbeat.hpp"
 #include "daemon/service/pose_publisher.hpp"
 #include "daemon/service/wake_up.hpp"
 #include "daemon/session/hand_stream.hpp"
@@ -30,11 +32,12 @@ namespace handeye {
 /// socket and the next frame.
 class TrackerThread {
  public:
-  /// Opens the socket: throws InputError when the port is in use. The thread starts with start().
+  /// Opens the socket, or takes the passed one over: throws InputError when the port is in use. The
+  /// thread starts with start().
   TrackerThread(const Config::Tracker& config, const PosePublisherOptions& camera_poses, Bus& bus,
-                const Channels& channels);
+                const Channels& channels, std::optional<int> passed_socket = std::nullopt);
 
-  void start();
+  void start(int realtime_priority = 0);
 
   /// From the main thread: samples of this body go to hand_samples() from now on, with that number.
   void begin_collecting(int body_id, std::uint64_t calibration);
@@ -56,6 +59,7 @@ class TrackerThread {
   /// Ids seen in the last datagram, "0 2".
   std::string tracked_bodies() const;
   std::uint16_t port() const { return receiver_.port(); }
+  const Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   /// What is wanted of the tracker, in one piece: no body's samples under another calibration.
@@ -66,6 +70,7 @@ class TrackerThread {
   static_assert(std::atomic<Collecting>::is_always_lock_free);
 
   void run(const std::stop_token& stop);
+  void say_taken_over() const;
   void wait_for_work();
   void take(const Datagram& datagram);
   void count_datagram();
@@ -98,6 +103,7 @@ class TrackerThread {
   BoundedQueue<WatchWord> watch_words_;
   BoundedQueue<FrameStamp> frame_stamps_;
   WakeUp frame_came_;
+  Heartbeat heartbeat_;
   std::jthread thread_;
 };
 

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/service/status_message.hpp"
+#include "daemon/service/thread_role.hpp"
 
 namespace handeye {
 namespace {
@@ -42,7 +43,10 @@ VisionThread::VisionThread(Exchange<Frame>& frames, Bus& bus, Options options)
 }
 
 void VisionThread::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    take_role({.name = "vision"});
+    run(stop);
+  });
 }
 
 std::uint64_t VisionThread::begin_collecting(const std::optional<Board>& board) {
@@ -58,6 +62,7 @@ std::uint64_t VisionThread::begin_collecting(const std::optional<Board>& board) 
 
 void VisionThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    heartbeat_.beat();
     Frame* frame = frames_.take(kWait);
     if (frame == nullptr) continue;
     // First, for a search may take long, and a recording should have every frame.

@@ -13,6 +13,7 @@
 #include <handeye/image_t.hpp>
 
 #include "daemon/service/exchange.hpp"
+#include "daemon/service/heartbeat.hpp"
 #include "daemon/session/image_health.hpp"
 #include "daemon/session/image_stage.hpp"
 #include "daemon/tracking/image_inspector.hpp"
@@ -62,6 +63,7 @@ class VisionThread {
   std::int64_t frames_collected() const { return frames_collected_; }
   /// What ails most of the last images, while collecting or not; kInterlaced: nothing else does.
   ImageCondition picture() const { return picture_; }
+  const Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   void run(const std::stop_token& stop);
@@ -105,6 +107,7 @@ class VisionThread {
   std::atomic<ImageCondition> picture_{ImageCondition::kGood};
   Exchange<TrackedItem> tracked_;
   Exchange<TrackedItem> watched_;
+  Heartbeat heartbeat_;
   std::jthread thread_;
 };
 

@@ -5,8 +5,10 @@
 #include <unistd.h>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
+#include "daemon/service/journal.hpp"
+#include "daemon/service/thread_role.hpp"
 #include "protocol/bus.hpp"
 
 namespace handeye {
@@ -35,8 +37,10 @@ void WatchThread::watch(std::int64_t request_id, const WatchedCalibration& calib
 }
 
 void WatchThread::run(const std::stop_token& stop) {
+  take_role({.name = "watch"});
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
   while (!stop.stop_requested()) {
+    heartbeat_.beat();
     TrackedItem* item = tracked_.take(kWait);
     while (const auto task = tasks_.pop()) begin(*task);
     while (const auto sample = hand_samples_.pop()) {
@@ -75,9 +79,11 @@ void WatchThread::tell() {
     listener_(request_id_, now.state);
   }
   if (now.state == WatchState::kBroken) {
-    spdlog::warn("calibration {}: {}", request_id_, now.text);
+    log_event(Event::kWatchBroken, fmt::format("calibration {}: {}", request_id_, now.text),
+              {{"REQUEST_ID", std::to_string(request_id_)}});
   } else if (before == WatchState::kBroken) {
-    spdlog::info("calibration {}: holds again", request_id_);
+    log_event(Event::kWatchHolds, fmt::format("calibration {}: holds again", request_id_),
+              {{"REQUEST_ID", std::to_string(request_id_)}});
   }
 }
 

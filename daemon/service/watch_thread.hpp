@@ -10,6 +10,7 @@
 
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/exchange.hpp"
+#include "daemon/service/heartbeat.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/session/calibration_watch.hpp"
 
@@ -34,6 +35,7 @@ class WatchThread {
 
   /// `now_ns`: CLOCK_MONOTONIC.
   WatchStatus status(std::int64_t now_ns) const;
+  const Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   struct Task {
@@ -57,6 +59,7 @@ class WatchThread {
   std::int64_t in_use_{0};  ///< the calibration that was asked for last
   WatchStatus status_;      ///< as of status_at_ns_
   std::int64_t status_at_ns_{0};
+  Heartbeat heartbeat_;
   std::jthread thread_;
 };
 

@@ -72,6 +72,9 @@ class Session {
   /// The running calibration ended; its result is kept for describe.
   void on_result(CalibrationResult result);
 
+  /// A result from before a restart, kept for describe. Only while nothing has been started.
+  void on_restored(CalibrationResult result) { last_result_ = std::move(result); }
+
   SessionState state() const { return state_; }
   /// The calibration that runs or ran last. Null: none since start.
   const StartOptions* current() const { return current_ ? &*current_ : nullptr; }

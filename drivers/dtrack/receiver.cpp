@@ -55,8 +55,8 @@ struct Receiver::Link {
   std::optional<in_addr> source;
   std::optional<sockaddr_in> controller;
   std::int64_t opener_silence_ns;
-  std::int64_t last_sign_of_life_ns{0};  ///< datagram accepted or opener sent
-  std::uint32_t kernel_drops{0};
+  std::int64_t last_sign_of_life_ns{0};       ///< datagram accepted or opener sent
+  std::optional<std::uint32_t> kernel_drops;  ///< as last told; nothing: a passed socket's past
   ArrivalClock clock;
 
   struct Slot {
@@ -80,6 +80,7 @@ Receiver::Link::Link(const ReceiverOptions& options)
     controller = socket_address(parse_ipv4(options.controller_address, "controller address"),
                                 options.controller_port);
   }
+  if (!options.passed_descriptor) kernel_drops = 0;
   for (std::size_t i = 0; i < kBatch; ++i) {
     slots[i].part = {slots[i].bytes.data(), slots[i].bytes.size()};
   }
@@ -87,6 +88,7 @@ Receiver::Link::Link(const ReceiverOptions& options)
 
 Receiver::Receiver(const ReceiverOptions& options) : link_(std::make_unique<Link>(options)) {
   port_ = link_->socket.port();
+  counters_.stale = link_->socket.stale();
   send_opener(clock_ns(CLOCK_MONOTONIC));
 }
 
@@ -152,8 +154,8 @@ void Receiver::accept(std::size_t slot_index) {
   mmsghdr& header = link_->headers[slot_index];
   const Ancillary ancillary = read_ancillary(header.msg_hdr);
   if (ancillary.drops) {
-    counters_.kernel_drops += *ancillary.drops - link_->kernel_drops;
-    link_->kernel_drops = *ancillary.drops;
+    counters_.kernel_drops += *ancillary.drops - link_->kernel_drops.value_or(*ancillary.drops);
+    link_->kernel_drops = ancillary.drops;
   }
   if (link_->source && slot.sender.sin_addr.s_addr != link_->source->s_addr) {
     ++counters_.ignored_source;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -23,6 +24,9 @@ struct ReceiverOptions {
   std::uint16_t controller_port{50107};
   std::chrono::milliseconds opener_silence{5'000};  ///< sent again after so long without data
   int receive_buffer_bytes{4 << 20};                ///< asked of the kernel, which may grant less
+  /// A bound UDP socket of IPv4 that is taken over, and closed in the end, instead of opening one:
+  /// systemd's. Port and bind address are then its own. Nothing: one is opened.
+  std::optional<int> passed_descriptor;
 };
 
 /// Counted since construction.
@@ -32,6 +36,7 @@ struct ReceiverCounters {
   std::uint64_t ignored_source{0};  ///< from another address than `source_address`
   std::uint64_t empty{0};           ///< zero-length
   std::uint64_t kernel_drops{0};    ///< the socket's buffer was full
+  std::uint64_t stale{0};           ///< waited in a passed socket from before it was taken over
   std::uint64_t socket_errors{0};   ///< failed receive calls, e.g. while the network is down
   std::uint64_t openers_sent{0};    ///< firewall openers
 };

@@ -2,6 +2,7 @@
 #include "drivers/dtrack/udp_socket.hpp"
 
 #include <cerrno>
+#include <fcntl.h>
 #include <net/if.h>
 #include <sys/socket.h>
 #include <system_error>
@@ -25,12 +26,15 @@ bool set_option(int descriptor, int level, int option, int value) {
 }  // namespace
 
 UdpSocket::UdpSocket(const ReceiverOptions& options)
-    : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    : descriptor_(options.passed_descriptor
+                      ? *options.passed_descriptor
+                      : socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (descriptor_ < 0) throw InputError("tracker: cannot open a UDP socket: " + why());
   try {
     set_up(options);
-    bind_to(options);
+    if (!options.passed_descriptor) bind_to(options);
     if (!options.multicast_group.empty()) join(options);
+    if (options.passed_descriptor) take_over();
   } catch (...) {
     close(descriptor_);
     throw;
@@ -83,6 +87,18 @@ void UdpSocket::bind_to(const ReceiverOptions& options) {
   throw InputError(port + " cannot be opened" +
                    (options.bind_address.empty() ? "" : " on " + options.bind_address) + ": " +
                    why());
+}
+
+/// Empties the queue: whatever is in it came before. The kernel's stamps cannot tell, for it stamps
+/// only what arrives after somebody has asked for stamps.
+void UdpSocket::take_over() {
+  constexpr std::uint64_t kMostWaiting = 1'000'000;  // a flood must not hold us here
+  fcntl(descriptor_, F_SETFL, fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
+  fcntl(descriptor_, F_SETFD, FD_CLOEXEC);
+  char byte = 0;
+  while (stale_ < kMostWaiting && recv(descriptor_, &byte, sizeof byte, MSG_DONTWAIT) >= 0) {
+    ++stale_;
+  }
 }
 
 void UdpSocket::join(const ReceiverOptions& options) {

@@ -33,6 +33,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  pid_t id() const { return process_; }
   void send_signal(int signal) const;
   /// Does not wait.
   bool has_ended();

@@ -53,8 +53,9 @@ int V4l2Device::request(unsigned long code, void* argument) const {
 std::string V4l2Device::failure(const std::string& doing, int error) const {
   switch (error) {
     case EACCES:
-    case EPERM:
       return path_ + ": permission denied; add the user to the group video";
+    case EPERM:  // systemd's DevicePolicy says so, not the file's rights
+      return path_ + ": forbidden by the service's unit; see DeviceAllow there";
     case EBUSY:
       return path_ + ": in use by another program";
     case ENOENT:

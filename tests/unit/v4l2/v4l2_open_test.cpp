@@ -57,6 +57,8 @@ TEST(V4l2Device, NamesTheUsualReasons) {
   ASSERT_TRUE(device.open("/dev/null"));
   EXPECT_EQ(device.failure("open", EACCES),
             "/dev/null: permission denied; add the user to the group video");
+  EXPECT_EQ(device.failure("open", EPERM),
+            "/dev/null: forbidden by the service's unit; see DeviceAllow there");
   EXPECT_EQ(device.failure("open", EBUSY), "/dev/null: in use by another program");
   EXPECT_EQ(device.failure("open", ENODEV), "/dev/null: not there");
   EXPECT_EQ(device.failure("start the stream", EIO),

@@ -82,6 +82,14 @@ HandDerivatives hand_derivatives(const HandAtFrame& hand, const Pose& room_from_
   return result;
 }
 
+std::vector<double> scales_since_start(const MetricScene& scene, const MetricState& state) {
+  std::vector<double> scales;
+  for (std::size_t part = 0; part < scene.keyframes_of_parts.size(); ++part) {
+    scales.push_back(similarity_of(scene, state, part).scale);
+  }
+  return scales;
+}
+
 std::vector<Pose> eyes_at_start(const MetricScene& scene) {
   std::vector<Pose> eyes;
   eyes.reserve(scene.frames.size());

@@ -20,6 +20,9 @@ struct HandDerivatives {
 HandDerivatives hand_derivatives(const HandAtFrame& hand, const Pose& room_from_eye,
                                  const MetricState& state);
 
+/// By how much each part's path has grown since the start.
+std::vector<double> scales_since_start(const MetricScene& scene, const MetricState& state);
+
 std::vector<Pose> eyes_at_start(const MetricScene& scene);
 
 /// room_from_eye of every frame of the scene. A frame that is no keyframe goes where its part as a

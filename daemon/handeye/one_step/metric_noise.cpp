@@ -27,14 +27,20 @@ Matrix6d sample_covariance(const HandAtFrame& hand, const MetricNoise& noise, bo
 }
 
 Matrix6d eye_noise_at_hand(const MetricFrame& frame, const Pose& room_from_eye,
-                           const MetricState& state) {
-  const Matrix6d by_eye = hand_derivatives(*frame.hand, room_from_eye, state).by_eye;
+                           const MetricState& state, double scale) {
+  const Eigen::Matrix3d turned =
+      room_from_eye.linear() * frame.room_from_eye_start.linear().transpose();
+  Matrix6d moved = Matrix6d::Zero();
+  moved.topLeftCorner<3, 3>() = turned;
+  moved.bottomRightCorner<3, 3>() = scale * turned;
+  const Matrix6d by_eye = hand_derivatives(*frame.hand, room_from_eye, state).by_eye * moved;
   return by_eye * frame.unit_covariance * by_eye.transpose();
 }
 
 HandWeights hand_weights(const MetricScene& scene, const std::vector<Pose>& eyes,
                          const MetricState& state, const MetricNoise& noise, bool measured) {
   HandWeights weights;
+  const std::vector<double> scales = scales_since_start(scene, state);
   weights.whitenings.assign(scene.frames.size(), Matrix6d::Zero());
   for (std::size_t k = 0; k < scene.frames.size(); ++k) {
     const MetricFrame& frame = scene.frames[k];
@@ -42,7 +48,8 @@ HandWeights hand_weights(const MetricScene& scene, const std::vector<Pose>& eyes
     Matrix6d covariance =
         interpolated_variance(*frame.hand) * sample_covariance(*frame.hand, noise, measured);
     if (!frame.keyframe) {
-      covariance += square(noise.image_px) * eye_noise_at_hand(frame, eyes[k], state);
+      covariance +=
+          square(noise.image_px) * eye_noise_at_hand(frame, eyes[k], state, scales[frame.part]);
     }
     const Eigen::LLT<Matrix6d> root(covariance);
     // A covariance that is none says nothing about its frame.

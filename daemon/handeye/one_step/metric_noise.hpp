@@ -21,9 +21,10 @@ double interpolated_variance(const HandAtFrame& hand);
 /// it does.
 Matrix6d sample_covariance(const HandAtFrame& hand, const MetricNoise& noise, bool measured);
 
-/// What turns a noise of the eye's (w, dC) into one of the hand residual; state's lever arm.
+/// The noise of a frame's own resection at 1 px, as one of the hand residual; `scale`: of its part
+/// since the start, for what was seen in the scene's units grows with the scene.
 Matrix6d eye_noise_at_hand(const MetricFrame& frame, const Pose& room_from_eye,
-                           const MetricState& state);
+                           const MetricState& state, double scale);
 
 /// How a frame's hand residual is weighed: the inverse root L^-1 of its covariance L L^T, which is
 /// the tracker's noise, interpolated, and that of the frame's own resection.

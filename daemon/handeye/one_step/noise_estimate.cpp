@@ -94,8 +94,8 @@ Leverage hand_leverage(const MetricProblem& problem) {
 }
 
 MetricNoise noise_at_start(const MetricScene& scene, const OneStepOptions& options) {
-  MetricNoise noise{options.image_noise_px.value_or(0), options.hand_rotation_sigma_rad,
-                    options.hand_translation_sigma_mm};
+  MetricNoise noise{std::max(options.image_noise_px.value_or(0), kLeastImageNoise_px),
+                    options.hand_rotation_sigma_rad, options.hand_translation_sigma_mm};
   if (!options.image_noise_px) {
     const double n = 2.0 * static_cast<double>(scene.observations.size());
     const double freedom = std::max(1.0, n - 3.0 * static_cast<double>(scene.points()) -
@@ -131,16 +131,20 @@ double image_freedom(const MetricProblem& problem) {
   return std::max(1.0, 2.0 * static_cast<double>(scene.observations.size()) - unknowns);
 }
 
+double image_noise_seen_px(const MetricProblem& problem) {
+  if (problem.options().image_noise_px) return *problem.options().image_noise_px;
+  return std::sqrt(problem.robust_image_squares() / image_freedom(problem));
+}
+
 MetricNoise estimated_noise(const MetricProblem& problem) {
   const OneStepOptions& options = problem.options();
   MetricNoise noise = problem.noise();
-  if (!options.image_noise_px) {
-    noise.image_px = standard_deviation(problem.robust_image_squares() / image_freedom(problem),
-                                        kLeastImageNoise_px);
-  }
+  const double image_px = image_noise_seen_px(problem);
+  noise.image_px = std::max(image_px, kLeastImageNoise_px);
   if (options.hand_noise != HandNoiseSource::kEstimated) return noise;
   const MetricScene& scene = problem.scene();
   const Leverage leverage = hand_leverage(problem);
+  const std::vector<double> scales = scales_since_start(scene, problem.state());
   const std::vector<HandRow>& rows = problem.hand_rows();
   Component rotation(square(problem.noise().hand_rotation_rad));
   Component translation(square(problem.noise().hand_translation_mm));
@@ -149,8 +153,10 @@ MetricNoise estimated_noise(const MetricProblem& problem) {
     const Pose& eye = problem.eyes()[rows[i].frame];
     const Vector6d residual = hand_residual(*frame.hand, eye, problem.state());
     const double weight = rows[i].weight / problem.share_of_hand_squares();
-    const Vector6d other = square(problem.noise().image_px) *
-                           eye_noise_at_hand(frame, eye, problem.state()).diagonal();
+    // What is not the tracker's is so by as much as was seen, not by what is allowed for.
+    const Vector6d other =
+        square(image_px) *
+        eye_noise_at_hand(frame, eye, problem.state(), scales[frame.part]).diagonal();
     const double share = interpolated_variance(*frame.hand);
     const Vector6d& taken = leverage.variances[i];
     rotation.add(weight * residual.head<3>().squaredNorm(), share, other.head<3>().sum(),

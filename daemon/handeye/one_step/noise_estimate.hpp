@@ -16,6 +16,10 @@ struct Leverage {
 };
 Leverage hand_leverage(const MetricProblem& problem);
 
+/// Of the images at a minimum, per axis: as given, or from the residuals, however small. The
+/// problem's own is never less than features err by together.
+double image_noise_seen_px(const MetricProblem& problem);
+
 /// Noise by medians where the problem starts: a start for `estimated_noise` that outliers do not
 /// spoil. What is given stays.
 MetricNoise noise_at_start(const MetricScene& scene, const OneStepOptions& options);

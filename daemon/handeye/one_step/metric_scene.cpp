@@ -80,14 +80,16 @@ Matrix6d in_room(const Matrix6d& of_eye_from_scene, const Pose& eye_from_scene,
 class SceneBuilder {
  public:
   SceneBuilder(const OneStepProblem& problem, const MaximumLikelihoodResult& start)
-      : problem_(problem), start_(start), keyframe_of_(problem.frames.size(), kNone) {}
+      : problem_(problem), start_(start), left_out_(problem.frames.size(), false) {}
 
   std::optional<MetricScene> build() {
     find_centre();
-    choose_keyframes();
-    if (scene_.keyframes_at_start.empty()) return std::nullopt;
+    do {
+      choose_keyframes();
+      if (scene_.keyframes_at_start.empty()) return std::nullopt;
+      add_points();
+    } while (leave_out_keyframes());
     for (std::size_t k = 0; k < problem_.frames.size(); ++k) add_frame(k);
-    for (const OneStepPoint& point : problem_.points) add_point(point);
     const auto hands = std::ranges::count_if(
         scene_.frames, [](const MetricFrame& frame) { return frame.hand.has_value(); });
     if (static_cast<std::size_t>(hands) < kFewestHands || scene_.points() == 0) return std::nullopt;
@@ -116,19 +118,17 @@ class SceneBuilder {
     return result;
   }
 
-  /// Those that see enough points, in parts that have enough of them.
+  /// Those that are not left out, in parts that have enough of them.
   void choose_keyframes() {
-    std::vector<std::size_t> seen(problem_.frames.size(), 0);
-    for (const OneStepPoint& point : problem_.points) {
-      if (point.observations.size() < 2) continue;
-      for (const auto& observation : point.observations) {
-        ++seen[static_cast<std::size_t>(observation.frame)];
-      }
-    }
+    keyframe_of_.assign(problem_.frames.size(), kNone);
+    frames_of_keyframes_.clear();
+    part_numbers_.clear();
+    scene_.keyframes_of_parts.clear();
+    scene_.keyframes_at_start.clear();
     std::vector<std::vector<std::size_t>> frames_of_parts(start_.parts.size());
     for (std::size_t k = 0; k < problem_.frames.size(); ++k) {
       const OneStepFrame& frame = problem_.frames[k];
-      if (!frame.keyframe || seen[k] < kFewestPointsOfKeyframe || !placement(frame.part)) continue;
+      if (!frame.keyframe || left_out_[k] || !placement(frame.part)) continue;
       const PartResult* part = used_part(start_, frame.part);
       frames_of_parts[static_cast<std::size_t>(part - start_.parts.data())].push_back(k);
     }
@@ -145,6 +145,25 @@ class SceneBuilder {
       }
       frames_of_keyframes_.insert(frames_of_keyframes_.end(), frames.begin(), frames.end());
     }
+  }
+
+  void add_points() {
+    scene_.observations.clear();
+    scene_.first_of_point.clear();
+    scene_.start.points_mm.clear();
+    for (const OneStepPoint& point : problem_.points) add_point(point);
+  }
+
+  /// Those that see too few of the points that are in use; whether there are any.
+  bool leave_out_keyframes() {
+    std::vector<std::size_t> seen(scene_.keyframes(), 0);
+    for (const MetricObservation& observation : scene_.observations) ++seen[observation.keyframe];
+    bool any = false;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (seen[k] >= kFewestPointsOfKeyframe) continue;
+      left_out_[frames_of_keyframes_[k]] = any = true;
+    }
+    return any;
   }
 
   void add_frame(std::size_t k) {
@@ -180,6 +199,8 @@ class SceneBuilder {
     frame.before = after == keyframes.begin() ? frame.after : *std::prev(after);
     const std::size_t from = frames_of_keyframes_[frame.before];
     const std::size_t to = frames_of_keyframes_[frame.after];
+    // By count, not by time: frames come at a steady rate, and where some were lost between two
+    // keyframes it only shifts how what both did beyond the scene's own motion is shared out.
     if (from < to) frame.share = static_cast<double>(k - from) / static_cast<double>(to - from);
   }
 
@@ -211,32 +232,14 @@ class SceneBuilder {
 
   const OneStepProblem& problem_;
   const MaximumLikelihoodResult& start_;
-  std::vector<std::size_t> keyframe_of_;  ///< one a frame
+  std::vector<bool> left_out_;            ///< one a frame
+  std::vector<std::size_t> keyframe_of_;  ///< likewise
   std::vector<std::size_t> frames_of_keyframes_;
   std::vector<int> part_numbers_;
   MetricScene scene_;
 };
 
 }  // namespace
-
-MetricState moved_by(const MetricState& state, const Eigen::VectorXd& step,
-                     const std::vector<Eigen::Vector3d>& point_steps_mm) {
-  MetricState moved = state;
-  for (std::size_t k = 0; k < moved.room_from_eye.size(); ++k) {
-    const Vector6d of_eye = step.segment<6>(unknowns_of_eye(k));
-    Pose& pose = moved.room_from_eye[k];
-    pose.linear() = exp_so3(of_eye.head<3>()) * pose.linear();
-    pose.translation() += of_eye.tail<3>();
-  }
-  const Eigen::Matrix<double, kCommonUnknowns, 1> common = step.tail<kCommonUnknowns>();
-  moved.hand_from_eye.linear() = exp_so3(common.head<3>()) * moved.hand_from_eye.linear();
-  moved.hand_from_eye.translation() += common.segment<3>(3);
-  moved.time_offset_s += common[kTimeInCommon];
-  const LensVector lens_step = common.tail<kLensParameters>();
-  moved.camera = with_lens(state.camera, lens_vector(state.camera) + lens_step);
-  for (std::size_t j = 0; j < moved.points_mm.size(); ++j) moved.points_mm[j] += point_steps_mm[j];
-  return moved;
-}
 
 std::optional<MetricScene> metric_scene(const OneStepProblem& problem,
                                         const MaximumLikelihoodResult& start) {

@@ -49,7 +49,7 @@ struct MetricFrame {
   std::size_t before{0}, after{0};
   double share{0};                             ///< b, 0..1
   Pose room_from_eye_start{Pose::Identity()};  ///< where the start places it
-  Matrix6d unit_covariance{Matrix6d::Zero()};  ///< of (w, dC) in the room at 1 px; 0: a keyframe
+  Matrix6d unit_covariance{Matrix6d::Zero()};  ///< of (w, dC) there at 1 px; 0: a keyframe
   std::optional<HandAtFrame> hand;             ///< its room counted from the scene's centre
 };
 

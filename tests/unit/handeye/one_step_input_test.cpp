@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "daemon/handeye/one_step/metric_scene.hpp"
 #include "tests/unit/handeye/one_step_scenes.hpp"
 
 /// What the joint adjustment makes of input that is incomplete or none.
@@ -95,6 +98,30 @@ TEST_F(OneStepInput, MayHavePointsSeenTwice) {
   }
   const auto result = solve();
   ASSERT_TRUE(result);
+  EXPECT_LT(error_in_sigmas(*result), 3.5);
+}
+
+/// Points that count for nothing do not make a keyframe of a frame.
+TEST_F(OneStepInput, OfAKeyframeThatSeesTooLittleIsLeftOut) {
+  constexpr int kPoor = 20;
+  for (OneStepPoint& point : scene_.problem.points) {
+    std::erase_if(point.observations, [](const auto& seen) { return seen.frame == kPoor; });
+  }
+  const Pose scene_from_eye = scene_.problem.frames[kPoor].eye_from_scene.inverse();
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Vector2d pixel(100 + 20 * i, 200);
+    scene_.problem.points.push_back(
+        {.point_scene = scene_from_eye * Eigen::Vector3d(0, 0.1 * i, -1),
+         .observations = {{kPoor, pixel}, {kPoor + 4, pixel}}});
+  }
+  const auto scene = metric_scene(scene_.problem, start_);
+  ASSERT_TRUE(scene);
+  std::vector<int> seen(scene->keyframes(), 0);
+  for (const MetricObservation& observation : scene->observations) ++seen[observation.keyframe];
+  EXPECT_GE(std::ranges::min(seen), 6);
+  const auto result = solve();
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->eye_from_room[kPoor]);
   EXPECT_LT(error_in_sigmas(*result), 3.5);
 }
 

@@ -9,6 +9,7 @@
 
 #include "daemon/handeye/one_step/hand_correlation.hpp"
 #include "daemon/handeye/one_step/noise_estimate.hpp"
+#include "daemon/handeye/one_step/path_scale.hpp"
 
 namespace handeye {
 namespace {
@@ -93,7 +94,11 @@ CommonMatrix prior_part(const MetricProblem& problem, const CommonMatrix& base) 
   return sum;
 }
 
-/// What the errors along whole tracks, as they were, move the common unknowns by.
+/// What the errors along whole tracks, as they were, move the common unknowns by. A track's
+/// residuals are smaller than its errors by what the solution took up of them, on average by
+/// freedom over errors. The whole factor makes them good, as leaving out a track at a time would
+/// (CR3), not its root, which suits independent errors (CR2; Bell & McCaffrey 2002): these come in
+/// only where errors agree along tracks, and there more of them is taken up than on average.
 std::vector<CommonVector> pulls_of_tracks(const MetricProblem& problem,
                                           const MetricColumns& by_common) {
   const MetricScene& scene = problem.scene();
@@ -141,6 +146,15 @@ CommonMatrix widened_by_tracks(const CommonMatrix& covariance, const CommonMatri
   return result;
 }
 
+/// By how much honesty widened the variance of hand_from_eye where it did most.
+double most_widened(const CommonMatrix& base, const CommonMatrix& covariance) {
+  const Matrix6d before = base.topLeftCorner<6, 6>();
+  const Matrix6d after = covariance.topLeftCorner<6, 6>();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratios(after, before,
+                                                                  Eigen::EigenvaluesOnly);
+  return std::max(1.0, ratios.eigenvalues().maxCoeff());
+}
+
 }  // namespace
 
 MetricCovariance metric_covariance(const MetricProblem& problem, double hand_freedom) {
@@ -169,6 +183,8 @@ MetricCovariance metric_covariance(const MetricProblem& problem, double hand_fre
   result.covariance = widened_by_tracks(of_independent_tracks, of_images,
                                         followers * resected_part(problem, answers),
                                         pulls_of_tracks(problem, by_common), estimated);
+  result.log_scale_sigma =
+      std::sqrt(log_scale_variance(problem) * most_widened(base, result.covariance));
   return result;
 }
 

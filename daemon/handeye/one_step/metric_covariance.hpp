@@ -8,6 +8,7 @@ namespace handeye {
 /// How sure the common unknowns are.
 struct MetricCovariance {
   CommonMatrix covariance{CommonMatrix::Zero()};  ///< 0 for what is held
+  double log_scale_sigma{0};                      ///< see OneStepResult
   double correlation_inflation{1};  ///< of the tracker's part, for errors correlated in time
 };
 

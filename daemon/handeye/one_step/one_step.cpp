@@ -83,6 +83,7 @@ OneStepResult describe(const OneStepProblem& given, const MetricProblem& problem
   OneStepResult result;
   result.hand_from_eye = state.hand_from_eye;
   result.covariance = covariance.covariance.topLeftCorner<6, 6>();
+  result.log_scale_sigma = covariance.log_scale_sigma;
   result.correlation_inflation = covariance.correlation_inflation;
   result.time_offset_correction_s = state.time_offset_s;
   result.time_offset_sigma_s = std::sqrt(covariance.covariance(kTimeInCommon, kTimeInCommon));
@@ -90,7 +91,7 @@ OneStepResult describe(const OneStepProblem& given, const MetricProblem& problem
   result.lens_covariance =
       covariance.covariance.bottomRightCorner<kLensParameters, kLensParameters>();
   write_hand_noise(problem, result);
-  result.image_noise_px = problem.noise().image_px;
+  result.image_noise_px = image_noise_seen_px(problem);
   result.reprojection_px =
       std::sqrt(problem.image_squares() / static_cast<double>(problem.scene().observations.size()));
   result.chi2_per_dof = chi2_as_assumed(problem) / freedom;

@@ -79,6 +79,8 @@ struct OneStepResult {
   /// Of (w [rad], dt [mm]) in R = Exp(w) R_estimate, t = t_estimate + dt of hand_from_eye, all else
   /// free: structure, poses, time and, where it is free, the lens.
   Matrix6d covariance{Matrix6d::Zero()};
+  /// Of the log of the camera's path, as long as it is in the room: of the part that knows it best.
+  double log_scale_sigma{0};
   /// To be added to the time offset that the hand was looked up with; first order.
   double time_offset_correction_s{0};
   double time_offset_sigma_s{0};
@@ -86,7 +88,7 @@ struct OneStepResult {
   LensMatrix lens_covariance{LensMatrix::Zero()};
   double hand_rotation_sigma_rad{0};    ///< as given (mean, where measured) or estimated
   double hand_translation_sigma_mm{0};  ///< likewise
-  double image_noise_px{0};             ///< likewise; estimated as 0.1 at least
+  double image_noise_px{0};             ///< likewise; weighed as 0.1 at least
   double reprojection_px{0};            ///< rms over the keyframes' observations
   double chi2_per_dof{0};               ///< of the tracker's residuals against the noise assumed
   double correlation_inflation{1};      ///< of the covariance, for errors correlated in time

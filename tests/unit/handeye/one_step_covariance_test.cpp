@@ -10,7 +10,10 @@ namespace handeye {
 namespace {
 
 using synthetic::nees_band;
+using synthetic::one_step_options;
+using synthetic::one_step_scene;
 using synthetic::OneStepSceneOptions;
+using synthetic::start_of;
 using synthetic::study;
 
 constexpr int kSeeds = 25;
@@ -65,6 +68,36 @@ TEST(OneStepCovariance, IsHonestWhereFramesFollowWithTheLensFree) {
   OneStepSceneOptions options;
   options.lens = IntrinsicsMode::kRefine;
   expect_honest(options, HandNoiseSource::kEstimated);
+}
+
+/// How long the path is: all that scale means.
+TEST(OneStepCovariance, KnowsHowSureItIsOfTheScale) {
+  const auto log_spread = [](const std::vector<Eigen::Vector3d>& path) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& centre : path) mean += centre / static_cast<double>(path.size());
+    double squares = 0;
+    for (const Eigen::Vector3d& centre : path) squares += (centre - mean).squaredNorm();
+    return 0.5 * std::log(squares);
+  };
+  double squares = 0;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    const synthetic::OneStepScene scene = one_step_scene({}, seed);
+    const auto found = one_step(scene.problem, *start_of(scene),
+                                one_step_options(scene, HandNoiseSource::kEstimated));
+    ASSERT_TRUE(found);
+    std::vector<Eigen::Vector3d> path;
+    std::vector<Eigen::Vector3d> truth;
+    for (std::size_t k = 0; k < scene.problem.frames.size(); ++k) {
+      if (!scene.problem.frames[k].keyframe) continue;
+      path.push_back(found->eye_from_room[k]->inverse().translation());
+      truth.push_back(scene.tracks.eye_from_room[k].inverse().translation());
+    }
+    const double off = log_spread(path) - log_spread(truth);
+    squares += off * off / (found->log_scale_sigma * found->log_scale_sigma);
+  }
+  // 99.8 % of a sum of so many squared normal deviates.
+  EXPECT_GT(squares, 8.6);
+  EXPECT_LT(squares, 52.7);
 }
 
 /// Errors along a track that forget themselves slowly are fewer than they seem.

@@ -132,8 +132,10 @@ double set_rate(const V4l2Device& device, double rate_hz) {
 }  // namespace
 
 std::variant<V4l2Stream, std::string> negotiate(const V4l2Device& device, const V4l2Wish& wish) {
-  // First, so that a change after the signal was read is not missed.
+  if (const auto problem = adopt_signal(device)) return *problem;
   subscribe_to_signal_changes(device);
+  // Again, for a change before the subscription was missed. Not the subscription first: some
+  // drivers report it as a change when we take over what has changed.
   if (const auto problem = adopt_signal(device)) return *problem;
 
   V4l2Wish wanted = wish;

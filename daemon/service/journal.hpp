@@ -22,9 +22,9 @@ enum class Event {
   kCalibrationNotRestored,  ///< FILE
   kCalibrationNotStored,    ///< FILE
   kWatchBroken,             ///< REQUEST_ID
-  kWatchHolds,              ///< REQUEST_ID; after it was broken, or the first time after a restart
-  kThreadStuck,             ///< THREAD
-  kThreadGoesOn,            ///< THREAD
+  kWatchHolds,    ///< REQUEST_ID; again after it was broken, or the first time after a restart
+  kThreadStuck,   ///< THREAD
+  kThreadGoesOn,  ///< THREAD
 };
 
 struct EventField {

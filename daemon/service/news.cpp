@@ -68,6 +68,12 @@ void log_restored(const CalibrationResult& result) {
              {"AGE_S", age_s ? fmt::format("{:.0f}", *age_s) : "unknown"}});
 }
 
+void log_holds(std::int64_t request_id) {
+  log_event(Event::kWatchHolds,
+            fmt::format("calibration {}: still holds, as live images show", request_id),
+            {request_field(request_id)});
+}
+
 void log_not_used(const CalibrationResult& result, std::string_view reason) {
   log_event(Event::kCalibrationNotRestored,
             fmt::format("calibration {} was stored, but is not used: {}; calibrate again",

@@ -17,6 +17,8 @@ namespace handeye {
 void log_started(const StartOptions& start);
 void log_result(const CalibrationResult& result);
 void log_restored(const CalibrationResult& result);
+/// It has been seen to hold for the first time since.
+void log_holds(std::int64_t request_id);
 /// It was stored, and cannot be used; why not.
 void log_not_used(const CalibrationResult& result, std::string_view reason);
 

@@ -45,7 +45,10 @@ status_t Service::status_message() {
   }
   const WatchStatus watch = watch_.status(now_ns);
   // Seen to hold, it is as good as one of today.
-  if (in_use_ && watch.state == WatchState::kHolds) in_use_->restored = false;
+  if (in_use_ && in_use_->restored && watch.state == WatchState::kHolds) {
+    in_use_->restored = false;
+    log_holds(in_use_->request_id);
+  }
   write_calibration(in_use_, now_ns, status);
   write_watch(watch, status);
   status.undecodable = static_cast<std::int64_t>(bus_.undecodable());

@@ -69,6 +69,12 @@ sigma_rotation_deg = 0.2
 sigma_translation_mm = 1
 min_duration_s = 5
 max_duration_s = 40.5
+keep = false
+store = "kept.json"
+[service]
+realtime_priority = 0
+stuck_after_s = 1.5
+solver_stuck_after_s = 60
 [camera_pose]
 wait_ms = 12.5
 predict_ms = 0
@@ -91,6 +97,11 @@ level = "debug"
   EXPECT_EQ(config.camera.mask, "/abs/mask.png");
   EXPECT_DOUBLE_EQ(config.calibration.wanted.translation_mm, 1.0) << "a whole number is a number";
   EXPECT_DOUBLE_EQ(config.calibration.max_duration_s, 40.5);
+  EXPECT_FALSE(config.calibration.keep);
+  EXPECT_EQ(config.calibration.store, file.path().parent_path() / "kept.json");
+  EXPECT_EQ(config.service.realtime_priority, 0);
+  EXPECT_DOUBLE_EQ(config.service.stuck_after_s, 1.5);
+  EXPECT_DOUBLE_EQ(config.service.solver_stuck_after_s, 60);
   EXPECT_DOUBLE_EQ(config.camera_pose.wait_ms, 12.5);
   EXPECT_DOUBLE_EQ(config.camera_pose.predict_ms, 0);
   EXPECT_EQ(config.log.level, "debug");
@@ -106,6 +117,9 @@ TEST(Config, HasDefaultsForEverythingButTheIntrinsics) {
   EXPECT_EQ(config.camera.driver, Config::Camera::Driver::kV4l2);
   EXPECT_EQ(config.lcm.prefix, kDefaultChannelPrefix);
   EXPECT_DOUBLE_EQ(config.calibration.wanted.rotation_deg, 0.3);
+  EXPECT_TRUE(config.calibration.keep);
+  EXPECT_EQ(config.calibration.store, "") << "systemd says where";
+  EXPECT_EQ(config.service.realtime_priority, 20);
   EXPECT_DOUBLE_EQ(config.camera_pose.wait_ms, 20);
   EXPECT_DOUBLE_EQ(config.camera_pose.predict_ms, 60);
 }

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/unit/session/degenerate_scenes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "daemon/session/replay.hpp"
 #include "drivers/simulator/record.hpp"
@@ -19,8 +16,6 @@ namespace {
 using simulator::MotionKind;
 using simulator::SceneKind;
 using simulator::SimulatorOptions;
-
-constexpr double kHonest = 3.5;  // error in its own standard deviations
 
 void cover_lens(SimulatorOptions& options) {
   options.disturbances.dark_s = 1.5;
@@ -99,14 +94,7 @@ std::span<const Scene> scenes() {
 }
 
 const Scene& scene(std::string_view name) {
-  const auto* const found = std::ranges::find(kScenes, name, &Scene::name);
-  if (found == kScenes.end()) throw std::out_of_range(std::string(name));
-  return *found;
-}
-
-double Trial::error_in_sigmas() const {
-  return std::max(rotation_error_deg / result.sigma_rotation_deg,
-                  translation_error_mm / result.sigma_translation_mm);
+  return trial::scene_named<SimulatorOptions>(name, kScenes);
 }
 
 Trial run(const Scene& scene, std::uint64_t seed, double duration_s) {
@@ -116,35 +104,12 @@ Trial run(const Scene& scene, std::uint64_t seed, double duration_s) {
   const TemporaryFolder folder;
   const std::filesystem::path recording = folder.path() / "recording";
   simulator::record(world, duration_s, recording);
-
-  Trial trial{.result = replay({.recording = recording})};
-  if (trial.result.has_estimate) {
-    const Pose& found = trial.result.solution.hand_from_eye;
-    trial.rotation_error_deg =
-        deg_from_rad(rotation_angle_rad(found.linear(), world.hand_from_eye.linear()));
-    trial.translation_error_mm = (found.translation() - world.hand_from_eye.translation()).norm();
-  }
-  return trial;
+  return trial::against(world.hand_from_eye, replay({.recording = recording}));
 }
 
 bool is_right(const Scene& scene, const Trial& trial) {
-  if (trial.accepted()) return scene.reasons.empty() && trial.error_in_sigmas() < kHonest;
-  return scene.reasons.empty() ||
-         std::ranges::find(scene.reasons, trial.result.reason) != scene.reasons.end();
-}
-
-std::string describe(const Trial& trial) {
-  const CalibrationResult& result = trial.result;
-  if (!result.has_estimate) {
-    return fmt::format("refused, {} ({})", reason_word(result.reason), result.missing);
-  }
-  return fmt::format("{} {} {:.3f} deg (sigma {:.3f}), {:.2f} mm (sigma {:.2f}), {} of {} frames",
-                     trial.accepted() ? "accepted"
-                                      : fmt::format("refused, {} ({}),", reason_word(result.reason),
-                                                    result.missing),
-                     result.method, trial.rotation_error_deg, result.sigma_rotation_deg,
-                     trial.translation_error_mm, result.sigma_translation_mm, result.frames.used,
-                     result.frames.received);
+  if (scene.reasons.empty()) return !trial.accepted() || trial.is_honest();
+  return trial.refused_for_any(scene.reasons);
 }
 
 }  // namespace handeye::degenerate

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/unit/session/timing_scenes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -24,7 +22,6 @@ using simulator::tracker_fault;
 using simulator::World;
 
 constexpr std::int64_t kStartNs = 1'000'000'000'000;
-constexpr double kHonest = 3.5;  // error in its own standard deviations
 
 // The tracker's datagrams are late by a jitter of 1 ms in the mean; where they carry no time, that
 // mean is part of the offset, and the rest of it noise.
@@ -160,45 +157,27 @@ std::span<const Scene> scenes() {
 }
 
 const Scene& scene(std::string_view name) {
-  const auto* const found = std::ranges::find(kScenes, name, &Scene::name);
-  if (found == kScenes.end()) throw std::out_of_range(std::string(name));
-  return *found;
+  return trial::scene_named<World>(name, kScenes);
 }
 
 Trial run(const Scene& scene, const Footage& footage) {
   World world = footage.world;
-  scene.disturb(world);
-  Trial trial{.result = calibrate(world, footage)};
+  scene.apply(world);
+  Trial trial{trial::against(world.hand_from_eye, calibrate(world, footage))};
   if (!trial.result.has_estimate) return trial;
-  const Pose& found = trial.result.solution.hand_from_eye;
-  trial.rotation_error_deg =
-      deg_from_rad(rotation_angle_rad(found.linear(), world.hand_from_eye.linear()));
-  trial.translation_error_mm = (found.translation() - world.hand_from_eye.translation()).norm();
   trial.time_offset_error_s =
       std::abs(trial.result.time_offset_s.value_or(0) - true_offset_s(world));
   return trial;
 }
 
 bool is_right(const Scene& scene, const Trial& trial) {
-  const CalibrationResult& result = trial.result;
-  if (!trial.accepted()) {
-    return std::ranges::find(scene.may_be_refused, result.reason) != scene.may_be_refused.end();
-  }
-  return trial.rotation_error_deg < kHonest * result.sigma_rotation_deg &&
-         trial.translation_error_mm < kHonest * result.sigma_translation_mm;
+  return trial.accepted() ? trial.is_honest() : trial.refused_for_any(scene.reasons);
 }
 
 std::string describe(const Trial& trial) {
-  const CalibrationResult& result = trial.result;
-  const std::string verdict =
-      trial.accepted() ? "accepted" : fmt::format("refused, {},", reason_word(result.reason));
-  if (!result.has_estimate) return verdict + " no estimate";
-  return fmt::format(
-      "{} {} {:.3f} deg (sigma {:.3f}), {:.2f} mm (sigma {:.2f}), {:.2f} ms (sigma {:.2f}), {} of "
-      "{}",
-      verdict, result.method, trial.rotation_error_deg, result.sigma_rotation_deg,
-      trial.translation_error_mm, result.sigma_translation_mm, 1e3 * trial.time_offset_error_s,
-      1e3 * result.time_offset_sigma_s.value_or(0), result.frames.used, result.frames.received);
+  return fmt::format("{}, {:.2f} ms (sigma {:.2f})", trial::describe(trial),
+                     1e3 * trial.time_offset_error_s,
+                     1e3 * trial.result.time_offset_sigma_s.value_or(0));
 }
 
 }  // namespace handeye::timing

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "daemon/session/result.hpp"
 #include "drivers/simulator/endoscope_device.hpp"
 #include "drivers/simulator/world.hpp"
+#include "tests/unit/session/trial.hpp"
 
 /// What goes wrong with the time and the way of both devices' data, from images and datagrams to
 /// the verdict: a calibration must come out right all the same, or be refused.
@@ -26,27 +25,16 @@ struct Footage {
   std::vector<cv::Mat> pictures;  ///< of every frame; rendered once, for rendering is what costs
 };
 
-struct Scene {
-  std::string_view name;
-  /// Of the footage's world; the pictures stay.
-  void (*disturb)(simulator::World& world);
-  /// Too little may be left to answer: refused for any of these is right, too. None: it is to be
-  /// accepted.
-  std::vector<Reason> may_be_refused;
-};
+/// Disturbs the footage's world; the pictures stay. Too little may be left to answer: refused for
+/// any of its reasons is right, too. None: it is to be accepted.
+using Scene = trial::SceneOf<simulator::World>;
 
 std::span<const Scene> scenes();
 /// Throws std::out_of_range for an unknown name.
 const Scene& scene(std::string_view name);
 
-/// What was answered, against the truth.
-struct Trial {
-  CalibrationResult result;
-  double rotation_error_deg{0};
-  double translation_error_mm{0};
+struct Trial : trial::Trial {
   double time_offset_error_s{0};
-
-  bool accepted() const { return result.verdict == Verdict::kAccepted; }
 };
 
 /// The daemon's pipeline on the footage, disturbed; datagrams and frames in order of arrival.
@@ -55,7 +43,7 @@ Trial run(const Scene& scene, const Footage& footage);
 /// Accepted within 3.5 of its own sigmas, or refused for a reason that is right.
 bool is_right(const Scene& scene, const Trial& trial);
 
-/// One line: verdict, reason, errors and sigmas.
+/// One line: as of any trial, and the time offset.
 std::string describe(const Trial& trial);
 
 }  // namespace handeye::timing

@@ -3,8 +3,11 @@
 
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "daemon/service/solver_thread_running.hpp"
 #include "daemon/service/thread_role.hpp"
+#include "daemon/session/stopwatch.hpp"
 
 namespace handeye {
 namespace {
@@ -32,6 +35,14 @@ CalibrationResult not_solved(const StartOptions& start) {
   result.reason = Reason::kUncertain;
   result.advice = "the solver failed, see the daemon's log: calibrate again";
   return result;
+}
+
+/// Everything so far goes in. The result does not tell what the adjustment takes.
+SolvedCalibration answer_of(Calibration& calibration) {
+  const Stopwatch stopwatch;
+  const CalibrationSnapshot snapshot = calibration.snapshot();
+  spdlog::info("solver: the eye's last adjustment took {:.0f} ms", stopwatch.elapsed_ms());
+  return handeye::solve(snapshot);
 }
 
 }  // namespace
@@ -152,9 +163,8 @@ std::optional<CalibrationResult> SolverThread::solve_finally(Running& running,
   std::future<SolvedCalibration> answer;
   while (!running.cancel_asked && !stop.stop_requested()) {
     if (!answer.valid() && !final_answer_.busy()) {
-      answer = final_answer_.run([calibration = std::move(running.calibration)] {
-        return handeye::solve(calibration->snapshot());
-      });
+      answer = final_answer_.run(
+          [calibration = std::move(running.calibration)] { return answer_of(*calibration); });
     } else if (!answer.valid()) {
       std::this_thread::sleep_for(kWait);  // one that was cancelled goes on to its end
     } else if (answer.wait_for(kWait) == std::future_status::ready) {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/system/pose_json.hpp"
+#include "tests/system/processor_use.hpp"
 #include "tests/system/room.hpp"
 
 namespace handeye::test {
@@ -99,24 +102,52 @@ TEST_F(LiveSystem, ShowsAnAnswerWithinSecondsAndRefinesIt) {
   expect_steady_guidance(listener().statuses());
 }
 
-// 30 s at 25 Hz, 640x480: the answer within a second after the last frame. A machine that is busy
-// with something else may miss it: once more then, with devices and daemon started anew.
+/// How long a method took; 0: the answer has none of that name.
+double time_ms(const result_t& result, std::string_view method) {
+  const auto found = std::ranges::find(result.methods, method, &method_result_t::name);
+  return found == result.methods.end() ? 0 : found->time_ms;
+}
+
+/// As the daemon's log says; 0: it does not.
+double last_adjustment_ms(const std::string& log) {
+  const std::string words = "last adjustment took ";
+  const std::size_t at = log.rfind(words);
+  return at == std::string::npos ? 0 : std::stod(log.substr(at + words.size()));
+}
+
+/// Where the time between FINISH and RESULT went.
+std::string parts_of(double answer_s, const result_t& result, double adjustment_ms) {
+  const double likelihood_ms = time_ms(result, "maximum_likelihood");
+  const double one_step_ms = time_ms(result, "one_step");
+  return fmt::format(
+      "FINISH answered after {:.0f} ms, {} frames: queue {:.0f}, eye {:.0f}, likelihood {:.0f}, "
+      "one step {:.0f}, halves and verdict {:.0f}",
+      1e3 * answer_s, result.frames_received,
+      1e3 * answer_s - adjustment_ms - result.time_handeye_ms, adjustment_ms, likelihood_ms,
+      one_step_ms, result.time_handeye_ms - likelihood_ms - one_step_ms);
+}
+
+// 30 s at 25 Hz, 640x480: the answer within a second after the last frame, on processors that
+// nobody else needs.
 TEST_F(LiveSystem, AnswersFinishWithinASecond) {
-  std::optional<double> answer_s;
-  for (int trial = 0; trial < 2 && !(answer_s && *answer_s <= 1.0); ++trial) {
-    begin(600);
-    if (HasFatalFailure()) return;
-    ASSERT_TRUE(listener().spin_until([&] { return status().elapsed_s > 30; }, seconds(60)));
-    answer_s = time_to_answer_s();
-    ASSERT_TRUE(answer_s);
-    const result_t& result = *listener().result_of(calibration_id_);
-    EXPECT_EQ(result.verdict, result_t::REFUSED) << "nothing reaches that sigma";
-    EXPECT_TRUE(result.has_estimate);
-    EXPECT_GT(result.frames_received, 500);
-    std::printf("FINISH answered after %.3f s, %d frames, hand-eye %.0f ms\n", *answer_s,
-                static_cast<int>(result.frames_received), result.time_handeye_ms);
-  }
-  EXPECT_LE(*answer_s, 1.0);
+  begin(600);
+  if (HasFatalFailure()) return;
+  ASSERT_TRUE(listener().spin_until([&] { return status().elapsed_s > 30; }, seconds(60)));
+  const ProcessorUse use({room_->daemon().id(), room_->simulator().id()});
+  const std::optional<double> answer_s = time_to_answer_s();
+  const ProcessorUse::Shares shares = use.until_now();
+  ASSERT_TRUE(answer_s);
+  const result_t& result = *listener().result_of(calibration_id_);
+  EXPECT_EQ(result.verdict, result_t::REFUSED) << "nothing reaches that sigma";
+  EXPECT_TRUE(result.has_estimate);
+  EXPECT_GT(result.frames_received, 500);
+  const double adjustment_ms = last_adjustment_ms(room_->daemon().out() + room_->daemon().err());
+  EXPECT_GT(adjustment_ms, 0) << "the daemon's log does not tell";
+  const std::string parts = parts_of(*answer_s, result, adjustment_ms);
+  std::printf("%s; processors: own %.2f, others %.2f, idle %.2f\n", parts.c_str(), shares.own,
+              shares.others, shares.idle);
+  if (*answer_s > 1.0 && shares.is_contended()) GTEST_SKIP() << words(shares) << "; " << parts;
+  EXPECT_LE(*answer_s, 1.0) << parts;
 }
 
 }  // namespace

@@ -93,7 +93,10 @@ void RoomTest::SetUp() {
   try {
     const Bus bus{std::string(kDefaultLcmProvider)};
   } catch (const InputError& error) {
-    GTEST_SKIP() << error.what();
+    GTEST_SKIP()
+        << "programs talk to each other by LCM's multicast here, and it could not be opened "
+           "at "
+        << kDefaultLcmProvider << ": " << error.what();
   }
 }
 

@@ -48,6 +48,7 @@ class Room {
   /// Writes the configuration, starts the daemon, waits for STATUS.
   testing::AssertionResult start_daemon(const DaemonSettings& settings = {});
   Process& daemon() { return *daemon_; }
+  const Process& simulator() const { return *simulator_; }
   /// Sends SIGTERM and waits; nothing when it has not ended after `timeout`.
   std::optional<Finished> stop_daemon(std::chrono::milliseconds timeout);
 

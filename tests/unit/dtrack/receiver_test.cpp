@@ -208,6 +208,13 @@ TEST(DTrackReceiver, AnOpenerThatCannotBeSentIsCountedOnly) {
   EXPECT_EQ(receiver.counters().socket_errors, 1U);
 }
 
+std::string joining_failed(const ReceiverOptions& options, const InputError& error) {
+  return "joining the multicast group " + options.multicast_group +
+         " on the loopback interface failed; `ip link set lo multicast on`, or a network namespace "
+         "that is allowed to, lets this test run: " +
+         error.what();
+}
+
 TEST(DTrackReceiver, JoinsAMulticastGroupOnTheChosenInterface) {
   ReceiverOptions options;
   options.port = 0;
@@ -217,12 +224,14 @@ TEST(DTrackReceiver, JoinsAMulticastGroupOnTheChosenInterface) {
   try {
     receiver.emplace(options);
   } catch (const InputError& error) {
-    GTEST_SKIP() << error.what();
+    GTEST_SKIP() << joining_failed(options, error);
   }
   UdpSender controller;
   if (!controller.send_to_loopback_multicast() ||
       !controller.send("fr 9\r\n", receiver->port(), options.multicast_group)) {
-    GTEST_SKIP() << "no multicast over the loopback interface here";
+    GTEST_SKIP() << "sending to the multicast group " << options.multicast_group
+                 << " over the loopback interface failed; `ip link set lo multicast on` lets this "
+                    "test run";
   }
   const auto datagrams = receive_all(*receiver, 1);
   ASSERT_EQ(datagrams.size(), 1U);
@@ -236,7 +245,7 @@ TEST(DTrackReceiver, JoinsAMulticastGroupOnTheInterfaceOfAnAddress) {
     const Receiver receiver(options);
     EXPECT_GT(receiver.port(), 0);
   } catch (const InputError& error) {
-    GTEST_SKIP() << error.what();
+    GTEST_SKIP() << joining_failed(options, error);
   }
 }
 

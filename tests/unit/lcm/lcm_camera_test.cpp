@@ -42,7 +42,8 @@ class LcmCameraTest : public testing::Test {
     try {
       sender_ = std::make_unique<Bus>(options_.provider_url);
     } catch (const InputError& error) {
-      GTEST_SKIP() << error.what();
+      GTEST_SKIP() << "opening LCM at " << options_.provider_url
+                   << " for a camera and a sender failed: " << error.what();
     }
     publisher_.emplace(*sender_, options_.channel);
     camera_.emplace(options_);

@@ -50,7 +50,8 @@ Judgement judged_one_step(const Evidence& evidence) {
   const JudgedAnswer answer{
       .hand_from_eye = found.solution.hand_from_eye,
       .covariance = found.result.covariance,
-      .halves = compare_halves(found.problem, found.start, found.result, found.options)};
+      .halves = compare_halves(found.problem, found.start, found.result, found.options),
+      .log_scale_sigma = found.result.log_scale_sigma};
   return judge(evidence.estimate.observations, *evidence.estimate.likelihood, answer,
                options_for(evidence));
 }

@@ -103,7 +103,8 @@ Verdicts verdicts(const OneStepSceneOptions& options, std::uint32_t seed,
     return result;
   }
   const JudgedAnswer answer{found->hand_from_eye, found->covariance,
-                            compare_halves(scene.problem, *start, *found, solving)};
+                            compare_halves(scene.problem, *start, *found, solving),
+                            found->log_scale_sigma};
   result.one_step =
       weighed(judge(observations, *start, answer, judging), found->hand_from_eye, scene);
   return result;

@@ -97,8 +97,9 @@ CommonMatrix prior_part(const MetricProblem& problem, const CommonMatrix& base) 
 /// What the errors along whole tracks, as they were, move the common unknowns by. A track's
 /// residuals are smaller than its errors by what the solution took up of them, on average by
 /// freedom over errors. The whole factor makes them good, as leaving out a track at a time would
-/// (CR3), not its root, which suits independent errors (CR2; Bell & McCaffrey 2002): these come in
-/// only where errors agree along tracks, and there more of them is taken up than on average.
+/// (CR3), not its root, which suits independent errors (CR2; Bell & McCaffrey 2002): these count
+/// only where errors agree along tracks, and there more is taken up than on average. NEES of 6 is
+/// 8.65 then, with the root 9.55 (100 seeds of `one_step_table drifting-tracks`).
 std::vector<CommonVector> pulls_of_tracks(const MetricProblem& problem,
                                           const MetricColumns& by_common) {
   const MetricScene& scene = problem.scene();

@@ -100,13 +100,14 @@ TEST(OneStepCovariance, KnowsHowSureItIsOfTheScale) {
   EXPECT_LT(squares, 52.7);
 }
 
-/// Errors along a track that forget themselves slowly are fewer than they seem.
+/// Errors along a track that forget themselves slowly are fewer than they seem; most of that is
+/// seen (over 100 seeds NEES is 7.9 for 6).
 TEST(OneStepCovariance, SeesThatErrorsAlongATrackAgree) {
   OneStepSceneOptions options;
   options.tracks.noise_memory_s = 1.0;
   const auto figures = study(options, HandNoiseSource::kEstimated, 20, 0).one_step;
   EXPECT_LT(figures.worst(), kHonest);
-  EXPECT_LT(figures.mean_nees(), 9.0);
+  EXPECT_LT(figures.mean_nees(), nees_band(20).high);
 }
 
 }  // namespace

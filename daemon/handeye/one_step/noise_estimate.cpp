@@ -6,6 +6,7 @@
 #include <random>
 
 #include "daemon/geometry/median.hpp"
+#include "daemon/handeye/one_step/hand_correlation.hpp"
 #include "daemon/handeye/one_step/hand_term.hpp"
 
 namespace handeye {
@@ -60,10 +61,50 @@ class Component {
   double expected_{0};  ///< for a sample's variance of 1
 };
 
+/// P values, P = J H^-1 J^T: what the solution takes up of errors of the hand rows, whitened; a
+/// column each.
+Eigen::MatrixXd taken_up(const MetricProblem& problem, const Eigen::MatrixXd& errors) {
+  const std::vector<HandRow>& rows = problem.hand_rows();
+  MetricColumns right = problem.equations().zero(errors.cols());
+  for (Eigen::Index column = 0; column < errors.cols(); ++column) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      rows[k].add_gradient(problem.scene(),
+                           errors.col(column).segment<6>(6 * static_cast<Eigen::Index>(k)), right,
+                           column);
+    }
+  }
+  const MetricColumns answers = problem.equations().solve(right);
+  Eigen::MatrixXd taken(errors.rows(), errors.cols());
+  for (Eigen::Index column = 0; column < errors.cols(); ++column) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      taken.col(column).segment<6>(6 * static_cast<Eigen::Index>(k)) =
+          rows[k].change(problem.scene(), answers, column);
+    }
+  }
+  return taken;
+}
+
+/// S errors: of frames that share samples of the tracker, the others' by what they share.
+Eigen::MatrixXd with_neighbours(const MetricProblem& problem, const Eigen::MatrixXd& errors) {
+  const std::vector<HandRow>& rows = problem.hand_rows();
+  const std::vector<MetricFrame>& frames = problem.scene().frames;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(errors.rows(), errors.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (std::size_t other = k + 1; other < rows.size(); ++other) {
+      if (frames[rows[other].frame].hand->sample > frames[rows[k].frame].hand->sample + 1) break;
+      const Matrix6d shared = shared_covariance(problem, rows[k], rows[other]);
+      const Eigen::Index at = 6 * static_cast<Eigen::Index>(k);
+      const Eigen::Index at_other = 6 * static_cast<Eigen::Index>(other);
+      sum.middleRows<6>(at) += shared * errors.middleRows<6>(at_other);
+      sum.middleRows<6>(at_other) += shared.transpose() * errors.middleRows<6>(at);
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 Leverage hand_leverage(const MetricProblem& problem) {
-  const MetricScene& scene = problem.scene();
   const std::vector<HandRow>& rows = problem.hand_rows();
   const auto n = static_cast<Eigen::Index>(rows.size());
   std::mt19937 generator(1);
@@ -71,25 +112,24 @@ Leverage hand_leverage(const MetricProblem& problem) {
   for (Eigen::Index i = 0; i < probes.size(); ++i) {
     probes(i) = (generator() & 1U) != 0 ? 1.0 : -1.0;
   }
-  MetricColumns right = problem.equations().zero(kProbes);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    for (int probe = 0; probe < kProbes; ++probe) {
-      rows[static_cast<std::size_t>(k)].add_gradient(scene, probes.col(probe).segment<6>(6 * k),
-                                                     right, probe);
-    }
-  }
-  const MetricColumns answers = problem.equations().solve(right);
+  const Eigen::MatrixXd taken = taken_up(problem, probes);
+  // Of errors that frames share more is taken up: with covariance I + S it is P + 2 P S - P S P.
+  Eigen::MatrixXd shared = with_neighbours(problem, probes);
+  if (!shared.isZero(0)) shared = taken_up(problem, shared);
   Leverage leverage;
   leverage.variances.assign(rows.size(), Vector6d::Zero());
   for (Eigen::Index k = 0; k < n; ++k) {
-    const HandRow& row = rows[static_cast<std::size_t>(k)];
-    const auto root = problem.hands().weights.whitenings[row.frame].triangularView<Eigen::Lower>();
+    const auto at = static_cast<std::size_t>(k);
+    const auto root =
+        problem.hands().weights.whitenings[rows[at].frame].triangularView<Eigen::Lower>();
     for (int probe = 0; probe < kProbes; ++probe) {
       const Vector6d z = probes.col(probe).segment<6>(6 * k);
-      const Vector6d pz = row.change(scene, answers, probe);
-      leverage.whitened += z.dot(pz) / kProbes;
-      leverage.variances[static_cast<std::size_t>(k)] +=
-          root.solve(z).cwiseProduct(root.solve(pz)) / kProbes;
+      const Vector6d pz = taken.col(probe).segment<6>(6 * k);
+      const Vector6d psz = shared.col(probe).segment<6>(6 * k);
+      leverage.whitened += (z.dot(pz + 2.0 * psz) - pz.dot(psz)) / kProbes;
+      leverage.variances[at] += (root.solve(z).cwiseProduct(root.solve(pz + 2.0 * psz)) -
+                                 root.solve(pz).cwiseProduct(root.solve(psz))) /
+                                kProbes;
     }
   }
   return leverage;

@@ -8,8 +8,9 @@
 namespace handeye {
 
 /// How much of the tracker's own errors the solution has taken up: of each hand row the diagonal
-/// of J H^-1 J^T (leverage), whose part of the residual's variance is missing. Estimated by some
-/// random probes (Hutchinson 1990), always the same: the sums over all rows are what is used.
+/// of J H^-1 J^T (leverage), and more of errors that frames share. That part of the residual's
+/// variance is missing. Estimated by some random probes (Hutchinson 1990), always the same: the
+/// sums over all rows are what is used.
 struct Leverage {
   std::vector<Vector6d> variances;  ///< of each hand row, not whitened [rad^2, mm^2]
   double whitened{0};               ///< sum over all rows: degrees of freedom used up

@@ -14,9 +14,10 @@ namespace {
 
 constexpr int kProbes = 16;
 /// Residuals are believed down to this: features err together, however little each seems to, by
-/// interpolation, windows seen aslant, a lens that is not quite of the model's kind. Sigmas of
-/// rendered sequences are wider by a twentieth for it, lens free, and nothing else is seen of it:
-/// of five answers (`accuracy_table 3 20 3`) the mean NEES of 6 is 2.9 with 0.1 px and with 0.001.
+/// interpolation, windows seen aslant, a lens that is not quite of the model's kind. A caution and
+/// no finding: of five answers to rendered sequences (seeds 3 to 5 of `accuracy_table 3 20 3`) the
+/// mean NEES of 6 is 2.9 with 0.1 px and with 0.001; sigmas are wider by 2 to 6 % for it, by 5 to
+/// 14 % with the lens free.
 constexpr double kLeastImageNoise_px = 0.1;
 /// No tracker is better than that.
 constexpr double kLeastRotation_rad = 1e-5;

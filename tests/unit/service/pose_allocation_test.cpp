@@ -1,58 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nothing is allocated for a sample of the hand or a frame once the poses flow. A program of its
-// own: it puts itself between everybody and the C library's allocator. What LCM allocates to send a
-// message is LCM's, and is measured by sending the like without a PosePublisher.
-#include <atomic>
+// own, in which everything that is allocated is counted. What LCM allocates to send a message is
+// LCM's, and is measured by sending the like without a PosePublisher.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include <gmock/gmock.h>
 
 #include "daemon/service/pose_publisher.hpp"
-
-namespace {
-
-std::atomic<std::int64_t> allocations{0};
-
-}  // namespace
-
-// The sanitizers have an allocator of their own, which is not to be disturbed.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HANDEYE_COUNTS_ALLOCATIONS 1
-
-extern "C" {
-
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(memory, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-
-}  // extern "C"
-#else
-#define HANDEYE_COUNTS_ALLOCATIONS 0
-#endif
+#include "tests/unit/counted_allocations.hpp"
 
 namespace handeye {
 namespace {
+
+using test::allocations;
+using test::counts_allocations;
 
 using std::chrono::milliseconds;
 
@@ -82,7 +45,7 @@ class PoseMemory : public testing::Test {
   }
 
   void SetUp() override {
-    if (HANDEYE_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "the sanitizer's allocator is in place";
+    if (!counts_allocations()) GTEST_SKIP() << "the sanitizer's allocator is in place";
     of_lcm_ = of_sending();
     RecordProperty("allocations_of_lcm", std::to_string(of_lcm_));
   }
@@ -96,7 +59,7 @@ class PoseMemory : public testing::Test {
     for (int frame = 0; frame < kFrames; ++frame) {
       const std::int64_t frame_ns = kStart_ns + frame * kFramePeriod_ns;
       const std::int64_t now_ns = frame_ns + 20 * kMillisecond_ns;
-      const std::int64_t before = allocations;
+      const std::int64_t before = allocations();
 
       for (; next_sample_ns_ + late_ns <= now_ns; next_sample_ns_ += kSamplePeriod_ns) {
         add_hand(hidden_every > 0 && ++samples_ % hidden_every == 0);
@@ -105,7 +68,7 @@ class PoseMemory : public testing::Test {
       publisher_.add_frame({frame_ns, frame, frame_ns});
       static_cast<void>(publisher_.due_ns(now_ns));
       publisher_.publish_ready(now_ns);
-      const std::int64_t count = allocations - before;
+      const std::int64_t count = allocations() - before;
       if (frame >= kFirstFrames) counts.push_back(count - of_lcm_);
       while (bus_.handle(milliseconds(0))) {
       }
@@ -136,9 +99,9 @@ class PoseMemory : public testing::Test {
     camera_pose_t pose{};
     std::int64_t count = 0;
     for (int i = 0; i < kFirstFrames; ++i) {
-      const std::int64_t before = allocations;
+      const std::int64_t before = allocations();
       publisher.publish(pose);
-      count = allocations - before;
+      count = allocations() - before;
       while (bus.handle(milliseconds(0))) {
       }
     }
@@ -172,10 +135,10 @@ TEST_F(PoseMemory, IsNotTakenForAHiddenHand) {
 }
 
 TEST_F(PoseMemory, IsCounted) {
-  const std::int64_t before = allocations;
+  const std::int64_t before = allocations();
   const std::vector<int> memory(1000);
   EXPECT_EQ(memory.size(), 1000U);
-  EXPECT_GT(allocations - before, 0);
+  EXPECT_GT(allocations() - before, 0);
 }
 
 }  // namespace

@@ -120,8 +120,8 @@ TEST(ClockProperties, HoursOfDriftStayBelowHalfAMillisecond) {
   }
 }
 
-/// A tracker's own stamps are noisy, too, which makes data come early as well as late; a full window
-/// is not dragged down by the earliest.
+/// A tracker's own stamps are noisy, too, which makes data come early as well as late; a full
+/// window is not dragged down by the earliest.
 TEST(ClockProperties, HoursOfNoisyStampsStayBelowAMillisecond) {
   for (const double drift : {-50e-6, 50e-6}) {
     const Network network{

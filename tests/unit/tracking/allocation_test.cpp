@@ -1,68 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program of its own: it puts itself between everybody, OpenCV included, and the C library's
-// allocator, on which operator new and cv::Mat rest.
-#include <atomic>
-#include <cerrno>
+// A program of its own, in which everything that is allocated is counted, by OpenCV too.
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 #include "daemon/tracking/feature_tracker.hpp"
+#include "tests/unit/counted_allocations.hpp"
 #include "tests/unit/tracking/moving_texture.hpp"
-
-namespace {
-
-std::atomic<std::int64_t> allocations{0};
-
-}  // namespace
-
-// The sanitizers have an allocator of their own, which is not to be disturbed.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HANDEYE_COUNTS_ALLOCATIONS 1
-
-extern "C" {
-
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(memory, size);
-}
-void* memalign(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
-  ++allocations;
-  *memory = __libc_memalign(alignment, size);
-  return *memory == nullptr ? ENOMEM : 0;
-}
-
-}  // extern "C"
-#else
-#define HANDEYE_COUNTS_ALLOCATIONS 0
-#endif
 
 namespace handeye {
 namespace {
+
+using test::allocations;
+using test::counts_allocations;
 
 constexpr std::int64_t kFrameNs = 40'000'000;
 constexpr int kFirstFrames = 24;  ///< in which the memory is taken
@@ -87,7 +39,7 @@ cv::Mat mask_of(cv::Size size, int frame) {
 class TrackerMemory : public testing::TestWithParam<cv::Size> {};
 
 TEST_P(TrackerMemory, IsTakenAtTheStartAndKept) {
-  if (HANDEYE_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "the sanitizer's allocator is in place";
+  if (!counts_allocations()) GTEST_SKIP() << "the sanitizer's allocator is in place";
   const cv::Size size = GetParam();
   cv::setNumThreads(1);  // OpenCV's own threads would hand out memory whenever they like
   const test::MovingTexture texture(size);
@@ -98,9 +50,9 @@ TEST_P(TrackerMemory, IsTakenAtTheStartAndKept) {
   for (int frame = 0; frame < kFrames; ++frame) {
     const cv::Mat image = texture.image(frame);
     const cv::Mat mask = mask_of(size, frame);
-    const std::int64_t before = allocations;
+    const std::int64_t before = allocations();
     tracker->track(image, mask, frame * kFrameNs, tracked);
-    const std::int64_t count = allocations - before;
+    const std::int64_t count = allocations() - before;
     features += tracked.observations.size();
     if (frame < kFirstFrames) continue;
     if (tracked.descriptions.empty()) {
@@ -110,7 +62,7 @@ TEST_P(TrackerMemory, IsTakenAtTheStartAndKept) {
       EXPECT_LE(count, kMostForDescriptions) << "in frame " << frame;
     }
   }
-  EXPECT_GT(allocations, 1000);  // they are counted
+  EXPECT_GT(allocations(), 1000);  // they are counted
   EXPECT_GT(plain_frames, (kFrames - kFirstFrames) / 2);
   EXPECT_GT(features / kFrames, 80U);
 }

@@ -28,6 +28,20 @@ within() {
   done
 }
 
+# after_reboot: true when the test runs again after `reboot_and_go_on`; the checks are counted on.
+after_reboot() {
+  [ -e before_reboot ] || return 1
+  checks=$(cat before_reboot)
+}
+
+# With a failure there is nothing to go on for.
+reboot_and_go_on() {
+  [ "$failures" = 0 ] || finish
+  echo "$checks" >before_reboot
+  echo "# reboot"
+  exit 100
+}
+
 finish() {
   echo "1..$checks"
   [ "$failures" = 0 ]

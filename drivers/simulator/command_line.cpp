@@ -161,6 +161,9 @@ CLI::App* add_run(CLI::App& program, CommandLine& line, RawOptions& raw) {
       ->capture_default_str();
   run->add_option("--lcm-url", line.live.lcm_url, "LCM provider of the frames")
       ->capture_default_str();
+  run->add_option("--camera-device", line.live.camera_device,
+                  "A video device that frames are written to instead, one of v4l2loopback's")
+      ->type_name("DEVICE");
   run->add_option("--prefix", line.live.channel_prefix, "Prefix of the LCM channel")
       ->capture_default_str();
   add_controller_options(*run, raw.controller);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -16,6 +17,7 @@
 #include "drivers/simulator/pacing.hpp"
 #include "drivers/simulator/tracker_link.hpp"
 #include "drivers/simulator/udp_sender.hpp"
+#include "drivers/simulator/v4l2_output.hpp"
 #include "protocol/bus.hpp"
 
 namespace handeye::simulator {
@@ -41,6 +43,9 @@ class LiveDevices {
         tracking_(options.tracking),
         bus_(options.lcm_url),
         frames_out_(bus_, Channels(options.channel_prefix).frame) {
+    if (!options.camera_device.empty()) {
+      video_out_.emplace(options.camera_device, world.camera.width, world.camera.height);
+    }
     for (int i = 0; i < kFramesInFlight; ++i) empty_.put(std::make_unique<SimulatedFrame>());
   }
 
@@ -63,6 +68,7 @@ class LiveDevices {
   std::function<bool()> tracking_;
   Bus bus_;
   Publisher<image_t> frames_out_;
+  std::optional<V4l2Output> video_out_;  ///< instead of LCM
   image_t message_{};
   Handover<FramePointer> empty_;
   Handover<FramePointer> rendered_;
@@ -115,7 +121,11 @@ std::uint32_t LiveDevices::first_in_time(std::uint32_t number, std::int64_t cost
 void LiveDevices::publish_frames(const std::stop_token& stop) {
   while (auto frame = rendered_.take(stop)) {
     if (!sleep_until((*frame)->arrival_ns, stop)) return;
-    publish(**frame);
+    if (video_out_) {
+      if (video_out_->show((*frame)->grey)) ++frames_;
+    } else {
+      publish(**frame);
+    }
     empty_.put(std::move(*frame));
   }
 }

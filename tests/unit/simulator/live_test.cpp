@@ -184,6 +184,19 @@ TEST_F(LiveTest, SendsDatagramsOnlyWhileTracking) {
   EXPECT_EQ(last.number, first.number + 9) << "the counter goes on";
 }
 
+TEST_F(LiveTest, SaysWhichVideoDeviceTakesNoPictures) {
+  for (const std::string device : {"/dev/no-such-video", "/dev/null"}) {
+    LiveOptions options = live_options();
+    options.camera_device = device;
+    try {
+      run_live(world_, 0.1, options, [] { return true; });
+      FAIL() << "no error";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(device), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(LiveTest, SaysWhichHostIsUnknown) {
   LiveOptions options = live_options();
   options.tracker_host = "no-such-host.invalid";

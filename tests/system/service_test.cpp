@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The daemon as a service: what systemd hears of it, and what it hears of systemd.
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <netinet/in.h>
 #include <sched.h>
@@ -89,7 +91,17 @@ TEST_F(ServiceSystem, OnlyReceivingThreadsMayHaveARealTimePriority) {
   room_.write_camera_file(kSomeCamera);
   ASSERT_TRUE(room_.start_daemon());
   const auto policy_of = [](pid_t thread) { return sched_getscheduler(thread); };
-  const auto threads = threads_of(room_.daemon().id());
+  // STATUS comes from the main thread: the others begin, and say who they are, when they are let.
+  // What they are allowed is the next that they settle.
+  auto threads = threads_of(room_.daemon().id());
+  const auto all_began = [&] {
+    threads = threads_of(room_.daemon().id());
+    return std::ranges::all_of(
+        std::array{"vision", "solver", "attempts", "final answer", "watch", "tracker", "camera"},
+        [&](const char* name) { return threads.contains(name); });
+  };
+  ASSERT_TRUE(spin_until(all_began));
+  spin_until([] { return false; }, milliseconds(300));
   for (const char* name : {"handeyed", "vision", "solver", "attempts", "final answer", "watch"}) {
     ASSERT_THAT(threads, Contains(Key(name)));
     EXPECT_EQ(policy_of(threads.at(name)), SCHED_OTHER) << name;

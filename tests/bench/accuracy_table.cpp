@@ -5,8 +5,7 @@
 // [SECONDS [FIRST_SEED]]] (default 10, 20, 1). Marks answers that are worse than the best of the
 // seed's five methods by more than their own sigma, and says how many chance alone makes of the
 // best possible answers. Ends with 1 where an accepted answer is beyond 3.5 of its own sigmas,
-// where the answers' rms is not below that of every one of the five, or where more are marked than
-// chance marks once in a hundred times.
+// where the answers' rms is not below that of every one of the five, or where an answer is marked.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +29,6 @@ using namespace handeye;
 namespace fs = std::filesystem;
 
 constexpr double kHonest = 3.5;
-constexpr double kRare = 0.01;
 
 constexpr std::array<std::string_view, 5> kSeedMethods{"dq_scale_separate", "horaud_scale_separate",
                                                        "nonlinear_quaternion",
@@ -157,8 +155,7 @@ bool Table::is_below_the_five() const {
 }
 
 bool Table::holds() const {
-  return estimates_ > 0 && dishonest_ == 0 && is_below_the_five() &&
-         chance_of_so_many(worse_, chances_) > kRare;
+  return estimates_ > 0 && dishonest_ == 0 && worse_ == 0 && is_below_the_five();
 }
 
 void Table::print_end() const {

@@ -23,6 +23,16 @@ std::map<std::string, pid_t> threads_of(pid_t process) {
   return threads;
 }
 
+bool is_waiting(pid_t process, pid_t thread) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/task/" + std::to_string(thread) +
+                     "/status");
+  const std::string sleeping = "State:\tS";
+  for (std::string line; std::getline(file, line);) {
+    if (line.compare(0, sleeping.size(), sleeping) == 0) return true;
+  }
+  return false;
+}
+
 StoppedThread::StoppedThread(pid_t thread) : thread_(thread) {
   if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) return;
   stopped_ = ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) == 0 &&

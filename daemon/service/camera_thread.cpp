@@ -52,35 +52,37 @@ void CameraThread::start(int realtime_priority) {
 }
 
 void CameraThread::run(const std::stop_token& stop) {
+  milliseconds wait = kFirstPause;
   while (!stop.stop_requested()) {
-    if (open(stop)) stream(stop);
+    const bool delivered = open() && stream(stop);
     camera_->close();
-  }
-}
-
-bool CameraThread::open(const std::stop_token& stop) {
-  std::string last_problem;
-  for (milliseconds wait = kFirstPause; !stop.stop_requested();
-       wait = std::min(2 * wait, kLongestPause)) {
-    heartbeat_.beat();
-    const auto problem = camera_->open();
-    if (!problem) {
-      health_.set(device_status_t::WAITING,
-                  fmt::format("{}: no frame yet", camera_->description()));
-      spdlog::info("camera: opened {}", camera_->description());
-      return true;
+    if (delivered) {
+      wait = kFirstPause;
+      continue;
     }
-    // Said once, not at every attempt.
-    if (*problem != last_problem) spdlog::warn("camera: {}", *problem);
-    last_problem = *problem;
-    health_.set(device_status_t::ABSENT, *problem);
     pause(stop, wait);
+    wait = std::min(2 * wait, kLongestPause);
   }
-  return false;
 }
 
-void CameraThread::stream(const std::stop_token& stop) {
+/// Tries once.
+bool CameraThread::open() {
+  heartbeat_.beat();
+  if (const auto problem = camera_->open()) {
+    delivers_nothing_ = false;
+    fail(*problem);
+    return false;
+  }
+  health_.set(device_status_t::WAITING, fmt::format("{}: no frame yet", camera_->description()));
+  // What was lost before its first frame is likely to be so again.
+  if (!delivers_nothing_) spdlog::info("camera: opened {}", camera_->description());
+  return true;
+}
+
+/// Until the camera is lost; true: it has delivered a frame, of whatever use.
+bool CameraThread::stream(const std::stop_token& stop) {
   std::optional<bool> said_usable;
+  bool delivered = false;
   clock_.restart();
   while (!stop.stop_requested()) {
     heartbeat_.beat();
@@ -89,12 +91,13 @@ void CameraThread::stream(const std::stop_token& stop) {
     const GrabStatus status = camera_->grab(frame, kGrabTimeout);
     count();
     if (status == GrabStatus::kLost || status == GrabStatus::kEnd) {
-      spdlog::debug("camera: lost {}", camera_->description());
-      health_.set(device_status_t::ABSENT,
-                  fmt::format("{}: lost, trying again", camera_->description()));
-      return;
+      lose(delivered);
+      break;
     }
     if (status != GrabStatus::kFrame) continue;
+    if (delivers_nothing_) spdlog::info("camera: {} delivers", camera_->description());
+    delivers_nothing_ = false;
+    delivered = true;
     const bool usable = has_right_size(frame);
     // Said when it changes, not with every frame.
     if (said_usable != usable) say(usable, frame);
@@ -111,6 +114,26 @@ void CameraThread::stream(const std::stop_token& stop) {
     }
     report_clock(health_.last_ns);
   }
+  return delivered;
+}
+
+void CameraThread::lose(bool delivered) {
+  if (!delivered) {
+    delivers_nothing_ = true;
+    fail(fmt::format("{}: lost before its first frame, trying again", camera_->description()));
+    return;
+  }
+  last_problem_.clear();
+  spdlog::debug("camera: lost {}", camera_->description());
+  health_.set(device_status_t::ABSENT,
+              fmt::format("{}: lost, trying again", camera_->description()));
+}
+
+/// Logged once, not at every attempt.
+void CameraThread::fail(const std::string& problem) {
+  if (problem != last_problem_) spdlog::warn("camera: {}", problem);
+  last_problem_ = problem;
+  health_.set(device_status_t::ABSENT, problem);
 }
 
 /// Puts the time of the host's clock into the frame; false: it is not known.

@@ -17,8 +17,9 @@
 namespace handeye {
 
 /// Keeps the camera open, whatever happens to it, and hands its frames on: opens, grabs, and after
-/// a loss opens again with growing pauses. Frames that are not of the intrinsics' size are refused,
-/// as are those of which nobody knows when they were taken (FrameClock).
+/// a loss opens again; after a failure, and where not one frame came, with growing pauses. Frames
+/// that are not of the intrinsics' size are refused, as are those of which nobody knows when they
+/// were taken (FrameClock).
 class CameraThread {
  public:
   using FrameTaken = std::function<void(const FrameStamp&)>;
@@ -35,8 +36,10 @@ class CameraThread {
 
  private:
   void run(const std::stop_token& stop);
-  bool open(const std::stop_token& stop);
-  void stream(const std::stop_token& stop);
+  bool open();
+  bool stream(const std::stop_token& stop);
+  void lose(bool delivered);
+  void fail(const std::string& problem);
   void hand_on(const Frame& frame);
   bool has_right_size(const Frame& frame) const;
   void say(bool usable, const Frame& frame);
@@ -51,6 +54,8 @@ class CameraThread {
   Frame* next_{nullptr};  ///< acquired, to be filled next; null: all are with the consumer
   Frame overflow_;        ///< filled then instead: received, and dropped
   DeviceHealth health_;
+  std::string last_problem_;      ///< as last logged
+  bool delivers_nothing_{false};  ///< was lost before its first frame
   FrameClock clock_;
   std::int64_t clock_reported_ns_{0};
   std::int64_t jumps_{0};  ///< of the camera's clock, as last said

@@ -43,6 +43,7 @@ class Script {
   }
   std::atomic<bool> plugged_in{true};
   std::atomic<int> grabs_without_step{0};
+  std::atomic<int> openings{0};
 
  private:
   std::mutex mutex_;
@@ -56,6 +57,7 @@ class ScriptedCamera final : public Camera {
   std::optional<std::string> open() override {
     if (!script_.plugged_in) return "/dev/endoscope0: not there";
     ++counters_.opened;
+    ++script_.openings;
     return std::nullopt;
   }
   void close() override {}
@@ -165,6 +167,43 @@ TEST_F(CameraThreadTest, OpensALostCameraAgain) {
   EXPECT_EQ(state_after(device_status_t::STREAMING).first, device_status_t::STREAMING);
   wait_until([&] { return thread_->health().restarts == 1; });
   EXPECT_EQ(thread_->health().restarts, 1);
+}
+
+/// A driver that is there, but fails: to open it again at once would be a loop without a rest.
+TEST_F(CameraThreadTest, PausesEverLongerWhereACameraOpensButDeliversNothing) {
+  script_.add({GrabStatus::kLost}, 10'000);
+  const auto begun = std::chrono::steady_clock::now();
+  start();
+  EXPECT_THAT(state_after(device_status_t::ABSENT).second, HasSubstr("before its first frame"));
+  wait_until([&] { return script_.openings >= 4; });
+  EXPECT_EQ(script_.openings, 4) << "it does not give up";
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, milliseconds(250 + 500 + 1000));
+}
+
+TEST_F(CameraThreadTest, OpensACameraThatDeliveredAtOnceHoweverOftenItIsLost) {
+  start();
+  constexpr std::uint32_t kLosses = 40;
+  const auto begun = std::chrono::steady_clock::now();
+  for (std::uint32_t i = 0; i < kLosses; ++i) {
+    script_.add({});
+    expect_frame(i);
+    script_.add({GrabStatus::kLost});
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, kLosses * milliseconds(250))
+      << "no pause between";
+}
+
+TEST_F(CameraThreadTest, AFrameEndsTheGrowthOfThePauses) {
+  script_.add({GrabStatus::kLost}, 3);
+  script_.add({});
+  start();
+  expect_frame(0);
+  script_.add({GrabStatus::kLost}, 2);
+  script_.add({});
+  const auto begun = std::chrono::steady_clock::now();
+  expect_frame(1);
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, milliseconds(1900))
+      << "0.25 s, not the 2 s that would be next";
 }
 
 TEST_F(CameraThreadTest, RefusesFramesOfAnotherSizeAndSaysBoth) {

@@ -43,10 +43,12 @@ void HandCourse::take(const PoseBuffer& buffer, std::size_t newest,
                       const HandCourseOptions& options) {
   if (newest >= buffer.size() || !buffer.at(newest).tracked) return;
   const std::int64_t newest_ns = buffer.at(newest).timestamp_ns;
+  const std::int64_t longest_gap_ns = buffer.bridged_gap_ns() + options.late_ns;
   for (std::size_t i = newest + 1; i-- > 0 && size_ < kMostSamples;) {
     const HandSample& sample = buffer.at(i);
-    if (newest_ns - sample.timestamp_ns > options.window_ns) return;
-    if (size_ > 0 && !joined(sample, *samples_[size_ - 1], buffer.bridged_gap_ns())) return;
+    const bool is_old = newest_ns - sample.timestamp_ns > options.window_ns;
+    if (is_old && size_ >= options.least_samples) return;
+    if (size_ > 0 && !joined(sample, *samples_[size_ - 1], longest_gap_ns)) return;
     samples_[size_] = &sample;
     times_s_[size_] = 1e-9 * static_cast<double>(sample.timestamp_ns - newest_ns);
     ++size_;

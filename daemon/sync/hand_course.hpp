@@ -16,9 +16,13 @@ struct HandCourseOptions {
   /// Samples that old count. Longer: less noise, but the hand's course bends; 0.15 s is the best or
   /// nearly so 20 to 60 ms ahead on simulated free-hand motion, on the same three times as fast,
   /// and on a camera that was really carried about by hand (shared data, streams/).
+  /// A tracker below 30 Hz has fewer than `least_samples` in it, and gets the time that they take.
   std::int64_t window_ns{150'000'000};
   std::int64_t least_span_ns{50'000'000};
   std::size_t least_samples{5};
+  /// A course runs through gaps that are longer by so much than those interpolated across: the
+  /// steps of a 10 Hz tracker lie on both sides of that limit, which is 100 ms.
+  std::int64_t late_ns{5'000'000};
 };
 
 /// What a course says of an instant. Six numbers: the turn against the newest sample as a rotation

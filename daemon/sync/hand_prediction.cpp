@@ -6,9 +6,9 @@
 namespace handeye {
 namespace {
 
-// Hindsight rests on a dozen independent figures or two; what is divided by their mean square is
-// that much larger on average than what is divided by the true one.
-constexpr double kOfFewFigures = 1.2;
+// Predictions that overlap miss alike, and so do axes that a hand moves along together: of so many
+// predictions one is an independent figure.
+constexpr double kMissAlike = 2;
 
 /// Mean square jerk per axis of the turn [(rad/s^3)^2] and of the way [(mm/s^3)^2].
 struct JerkVariance {
@@ -43,7 +43,13 @@ class Hindsight {
     ++count_;
   }
   int count() const { return count_; }
-  JerkVariance jerk() const { return {std::max(turn_ / gain_, 0.0), std::max(way_ / gain_, 0.0)}; }
+  /// What is divided by the mean square of n figures is n / (n - 2) times as large on average as
+  /// what is divided by the true one.
+  JerkVariance jerk() const {
+    const double figures = count_ / kMissAlike;
+    const double factor = figures / (figures - 2) / gain_;
+    return {factor * std::max(turn_, 0.0), factor * std::max(way_, 0.0)};
+  }
 
  private:
   double turn_{0};
@@ -60,7 +66,9 @@ Hindsight look_back(const PoseBuffer& buffer, std::int64_t ahead_ns, const Matri
   std::size_t from = newest;
   for (std::size_t to = newest; to > 0; --to) {
     const HandSample& sample = buffer.at(to);
-    if (buffer.at(newest).timestamp_ns - sample.timestamp_ns > options.hindsight_ns) break;
+    const std::int64_t ago_ns = buffer.at(newest).timestamp_ns - sample.timestamp_ns;
+    const bool is_enough = hindsight.count() >= options.least_hindsights;
+    if (ago_ns > (is_enough ? options.hindsight_ns : options.longest_hindsight_ns)) break;
     from = std::min(from, to - 1);
     while (from > 0 && sample.timestamp_ns - buffer.at(from).timestamp_ns < ahead_ns) --from;
     const HandSample& last = buffer.at(from);

@@ -42,15 +42,18 @@ struct HandPredictionOptions {
   double sway_rad_per_s{3.0};
   /// ... or of this one, as long as too little was seen to know better: a shaky hand's.
   double shaky_sway_rad_per_s{11.0};
-  /// ... and at least what predictions as far ahead would have missed by in this time.
+  /// ... and at least what predictions as far ahead would have missed by in this time, or the
+  /// longer one that a slow tracker needs for so many.
   std::int64_t hindsight_ns{500'000'000};
-  int least_hindsights{10};
+  int least_hindsights{10};  ///< at least 5
+  std::int64_t longest_hindsight_ns{1'200'000'000};
 };
 
 /// Where the hand is at `timestamp_ns`, beyond the newest sample: its course carried on. The
-/// covariance is that of the samples' noise, carried along, and of the jerk.
-/// Nothing where the newest sample is hidden, or too few since a gap, a hidden sample or a clock's
-/// jump. No allocation; some tens of microseconds.
+/// covariance is that of the samples' noise, carried along, and of the jerk. A tracker from 10 Hz
+/// on will do: the slower, the longer the course and the wider the claim. Nothing where the newest
+/// sample is hidden, or too few since a gap, a hidden sample or a clock's jump. No allocation; some
+/// tens of microseconds.
 std::optional<HandEstimate> predict_hand(const PoseBuffer& samples, std::int64_t timestamp_ns,
                                          const HandSampleNoise& noise,
                                          const HandPredictionOptions& options = {});

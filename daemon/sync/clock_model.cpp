@@ -8,7 +8,7 @@ namespace handeye {
 namespace {
 
 constexpr double kDay_s = 86400.0;
-// So many steady data exonerate a clock that its counter accuses, and so many are a burst's most.
+// So many steady data exonerate a clock that its counter accuses; so many suspects are no accident.
 constexpr int kSteady = 3;
 // Before these the report says that the mapping, or its slope, is not yet known.
 constexpr double kSteadyAfter_s = 2.0;
@@ -132,7 +132,9 @@ ClockModel::Belief ClockModel::judge(const Point& point, bool witnessed) {
   const bool may_be_delay = witnessed || (options_.lenient && residual_s > 0);
   const int needed = may_be_delay ? options_.delay_confirmations : options_.jump_confirmations;
   if (suspects_ >= needed) return Belief::kJumped;
-  return witnessed && (!is_steady || suspects_ < kSteady) ? Belief::kLate : Belief::kDoubted;
+  // A late datum whose clock is vouched for is only late, until the next is as late at the pace of
+  // both clocks: then the host's clock may have been stepped. Nothing tells so of the first one.
+  return witnessed && !is_steady ? Belief::kLate : Belief::kDoubted;
 }
 
 /// The counter says that the clock was stepped. So does the lateness, or the counter was: it began

@@ -13,4 +13,11 @@ struct HandItem {
   HandSample sample;
 };
 
+/// A sample of the calibrated hand on its way to the watch. What was on its way when another
+/// calibration came into use may be of another body.
+struct WatchedHand {
+  std::int64_t request_id{0};  ///< of the calibration in use
+  HandSample sample;
+};
+
 }  // namespace handeye

@@ -199,7 +199,7 @@ void TrackerThread::distribute(const HandSample& sample, std::uint32_t collectin
                                     ? sample
                                     : hand_stream_.sample_of(calibration->body_id);
   pose_publisher_.add_hand(calibrated);
-  watched_hand_.push(calibrated);
+  watched_hand_.push({calibration->request_id, calibrated});
 }
 
 std::string TrackerThread::tracked_bodies() const {

@@ -54,7 +54,7 @@ class TrackerThread {
   /// The solver's end of the samples of the hand.
   BoundedQueue<HandItem>& hand_samples() { return hand_samples_; }
   /// The watch's end: of the calibrated body.
-  BoundedQueue<HandSample>& watched_hand() { return watched_hand_; }
+  BoundedQueue<WatchedHand>& watched_hand() { return watched_hand_; }
   const DeviceHealth& health() const { return health_; }
   /// Ids seen in the last datagram, "0 2".
   std::string tracked_bodies() const;
@@ -98,7 +98,7 @@ class TrackerThread {
   std::atomic<std::uint64_t> tracked_bodies_{
       0};  ///< bit i: body i was tracked in the last datagram
   BoundedQueue<HandItem> hand_samples_;
-  BoundedQueue<HandSample> watched_hand_;
+  BoundedQueue<WatchedHand> watched_hand_;
   BoundedQueue<ActiveCalibration> calibrations_;
   BoundedQueue<WatchWord> watch_words_;
   BoundedQueue<FrameStamp> frame_stamps_;

@@ -19,7 +19,7 @@ constexpr int kNiceness = 5;
 
 }  // namespace
 
-WatchThread::WatchThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
+WatchThread::WatchThread(BoundedQueue<WatchedHand>& hand_samples, Exchange<TrackedItem>& tracked,
                          Listener listener)
     : hand_samples_(hand_samples), tracked_(tracked), listener_(std::move(listener)), tasks_(4) {}
 
@@ -43,8 +43,8 @@ void WatchThread::run(const std::stop_token& stop) {
     heartbeat_.beat();
     TrackedItem* item = tracked_.take(kWait);
     while (const auto task = tasks_.pop()) begin(*task);
-    while (const auto sample = hand_samples_.pop()) {
-      if (watch_) watch_->add_hand(*sample);
+    while (const auto hand = hand_samples_.pop()) {
+      if (watch_ && hand->request_id == request_id_) watch_->add_hand(hand->sample);
     }
     if (item != nullptr) {
       if (watch_) take_in(*item);

@@ -10,6 +10,7 @@
 
 #include "daemon/service/bounded_queue.hpp"
 #include "daemon/service/exchange.hpp"
+#include "daemon/service/hand_item.hpp"
 #include "daemon/service/heartbeat.hpp"
 #include "daemon/service/vision_thread.hpp"
 #include "daemon/session/calibration_watch.hpp"
@@ -25,7 +26,7 @@ class WatchThread {
   /// Must not call back.
   using Listener = std::function<void(std::int64_t request_id, WatchState state)>;
 
-  WatchThread(BoundedQueue<HandSample>& hand_samples, Exchange<TrackedItem>& tracked,
+  WatchThread(BoundedQueue<WatchedHand>& hand_samples, Exchange<TrackedItem>& tracked,
               Listener listener);
 
   void start();
@@ -48,7 +49,7 @@ class WatchThread {
   void take_in(TrackedItem& item);
   void tell();
 
-  BoundedQueue<HandSample>& hand_samples_;
+  BoundedQueue<WatchedHand>& hand_samples_;
   Exchange<TrackedItem>& tracked_;
   Listener listener_;
   BoundedQueue<Task> tasks_;

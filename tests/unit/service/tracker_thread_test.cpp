@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a tracker sends over UDP, as it comes to the solver.
+// What a tracker sends over UDP, as it comes to the solver and to the watch.
 #include "daemon/service/tracker_thread.hpp"
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -69,6 +70,38 @@ TEST_F(TrackerThreadTest, HandsOnWhatTheTrackerSaysOfItsUncertainty) {
     tracked += item->sample.tracked ? 1 : 0;
   }
   EXPECT_GT(tracked, kDatagrams / 2) << "of the others the clock is not yet known";
+}
+
+/// Two calibrations one after the other, of two bodies: the watch can tell whose hand it is.
+TEST_F(TrackerThreadTest, TellsTheWatchWhichCalibrationAHandIsOf) {
+  thread_.use({.request_id = 9, .body_id = 0});
+  const simulator::World world({.seed = 5, .body_id = 1}, 0);
+  simulator::TrackerDevice tracker(world);
+  const simulator::UdpSender sender("127.0.0.1", thread_.port());
+  simulator::SimulatedDatagram datagram;
+  const auto next_watched = [&] {
+    tracker.next(datagram);
+    sender.send(datagram.bytes);
+    return thread_.watched_hand().pop(milliseconds(100));
+  };
+  const auto until_of = [&](std::int64_t request_id) {
+    const auto deadline = std::chrono::steady_clock::now() + kLong;
+    std::optional<WatchedHand> hand;
+    while (!hand || hand->request_id != request_id) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      hand = next_watched();
+    }
+    return true;
+  };
+  ASSERT_TRUE(until_of(9));
+  thread_.use({.request_id = 10, .body_id = 1});
+  ASSERT_TRUE(until_of(10));
+  for (int i = 0; i < 10; ++i) {
+    const auto hand = next_watched();
+    ASSERT_TRUE(hand.has_value());
+    EXPECT_EQ(hand->request_id, 10);
+    EXPECT_FALSE(hand->sample.room_from_hand.isApprox(Pose::Identity())) << "the body that is seen";
+  }
 }
 
 }  // namespace

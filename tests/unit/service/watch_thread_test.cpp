@@ -27,14 +27,18 @@ class WatchThreadTest : public testing::Test {
  protected:
   WatchThreadTest() { watch_.start(); }
 
-  void begin(std::int64_t request_id) { watch_.watch(request_id, scene_.calibration()); }
+  void begin(std::int64_t request_id) {
+    watched_ = request_id;
+    watch_.watch(request_id, scene_.calibration());
+  }
 
   /// Stamped ahead of the monotonic clock, by which ages are: a slow machine makes none old.
   void feed_frame() {
     scene_.next({.add_hand =
                      [&](HandSample sample) {
                        sample.timestamp_ns += began_ns_;
-                       hand_.push(sample);
+                       hand_.push({watched_, sample});
+                       if (with_another_hand_) push_another(sample);
                      },
                  .add_frame =
                      [&](const TrackedFrame& frame) {
@@ -48,6 +52,13 @@ class WatchThreadTest : public testing::Test {
                        item->frame.timestamp_ns += began_ns_;
                        tracked_.commit(item);
                      }});
+  }
+
+  /// As of a body that a former calibration was of.
+  void push_another(HandSample sample) {
+    sample.timestamp_ns += 3'000'000;
+    sample.room_from_hand.translation() += Eigen::Vector3d(200, -100, 50);
+    hand_.push({watched_ - 1, sample});
   }
 
   /// Feeds on until that was told of it, or until patience is out.
@@ -70,7 +81,9 @@ class WatchThreadTest : public testing::Test {
       {.seed = 8, .motions = {MotionKind::kFree}, .turned_at_s = 20, .turn_deg = {0, 0, 5}}};
   std::mutex mutex_;
   Words words_;
-  BoundedQueue<HandSample> hand_{256};
+  BoundedQueue<WatchedHand> hand_{1024};
+  std::int64_t watched_{0};
+  bool with_another_hand_{false};
   Exchange<TrackedItem> tracked_{4};
   WatchThread watch_{hand_, tracked_, [this](std::int64_t request_id, WatchState state) {
                        const std::scoped_lock lock(mutex_);
@@ -101,6 +114,14 @@ TEST_F(WatchThreadTest, NeverTellsOfACalibrationThatIsNoLongerInUse) {
   const Words all = words();
   for (std::size_t i = told; i < all.size(); ++i) EXPECT_EQ(all[i].first, 8);
   EXPECT_EQ(all[told].second, WatchState::kUnchecked);
+}
+
+TEST_F(WatchThreadTest, TakesNoHandOfAnotherCalibration) {
+  with_another_hand_ = true;
+  begin(7);
+  ASSERT_TRUE(feed_until_told(7, WatchState::kHolds));
+  const Words expected{{7, WatchState::kUnchecked}, {7, WatchState::kHolds}};
+  EXPECT_EQ(words(), expected);
 }
 
 }  // namespace

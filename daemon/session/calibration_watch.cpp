@@ -15,6 +15,8 @@ constexpr std::size_t kMostPending = 32;
 constexpr std::size_t kHandSamples = 1024;
 /// Looks that fit nothing, one in so many of which is followed by a search.
 constexpr int kSearchEvery = 3;
+/// By letting go of the calibration; chance gains as much once in 400 looks.
+constexpr double kSuspiciousGain = 20.0;
 
 /// A calibration is never held more tightly than this.
 constexpr double kTightest_rad = 0.0007;
@@ -83,14 +85,20 @@ void CalibrationWatch::keep(const TrackedFrame& frame, const HandLookup& hand) {
   window_.erase(window_.begin(), too_old);
   if (window_.size() == options_.window_frames) window_.erase(window_.begin());
   window_.push_back(make_watch_frame(calibration_.camera, frame, hand, calibration_.hand_noise));
-  if (++since_look_ < options_.look_every || window_.size() < options_.short_frames) return;
-  since_look_ = 0;
-  look();
+  ++since_look_;
+  if (is_look_due()) look();
+}
+
+bool CalibrationWatch::is_look_due() const {
+  return window_.size() >= options_.short_frames &&
+         since_look_ >= (contradicted_ ? options_.look_again_after : options_.look_every);
 }
 
 void CalibrationWatch::look() {
   ++looks_;
+  since_look_ = 0;
   const WatchEvidence evidence = examine();
+  contradicted_ = evidence.kind == WatchEvidence::Kind::kContradicts;
   if (evidence.kind != WatchEvidence::Kind::kNone) {
     last_ = evidence;
     last_ns_ = window_.back().timestamp_ns;
@@ -107,22 +115,41 @@ std::optional<WatchFit> CalibrationWatch::fit(std::span<const WatchFrame> frames
   return other && explains(*other) ? other : fit;
 }
 
-/// The whole window, or the newest of it where something has changed within; where nothing near
-/// explains that either, anything may have happened.
-WatchEvidence CalibrationWatch::examine() {
+/// The newest frames alone, where something may have changed within the window: the fewest that
+/// tell enough. Where nothing near explains them, anything may have happened.
+std::optional<WatchFit> CalibrationWatch::fit_newest() {
   const std::span<const WatchFrame> all(window_);
-  std::optional<WatchFit> found = fit(all);
-  if (found && !explains(*found)) {
-    const auto newest = all.last(std::min(all.size(), options_.short_frames));
-    found = fit(newest);
-    if (found && !explains(*found) && failed_looks_ % kSearchEvery == 1) {
-      found = watch_search(newest, calibration_.hand_from_eye, fit_options_);
-    }
+  std::optional<WatchFit> newest;
+  for (const std::size_t count : {options_.middle_frames, options_.short_frames}) {
+    if (count >= all.size()) continue;
+    newest = fit(all.last(count));
+    if (newest && contradicts(*newest)) return newest;
+  }
+  if (newest && !explains(*newest) && failed_looks_ % kSearchEvery == 1) {
+    newest = watch_search(all.last(std::min(all.size(), options_.short_frames)),
+                          calibration_.hand_from_eye, fit_options_);
+  }
+  return newest;
+}
+
+bool CalibrationWatch::contradicts(const WatchFit& fit) const {
+  return judge(fit).kind == WatchEvidence::Kind::kContradicts;
+}
+
+WatchEvidence CalibrationWatch::judge(const WatchFit& fit) const {
+  return weigh(fit, calibration_.hand_from_eye, calibration_.covariance, options_.evidence);
+}
+
+WatchEvidence CalibrationWatch::examine() {
+  std::optional<WatchFit> found = fit(window_);
+  const bool suspicious = found && (!explains(*found) || found->gain > kSuspiciousGain);
+  if (suspicious && !contradicts(*found)) {
+    const std::optional<WatchFit> newest = fit_newest();
+    if (newest && (contradicts(*newest) || !explains(*found))) found = newest;
   }
   if (!found) return {};
   failed_looks_ = explains(*found) ? 0 : failed_looks_ + 1;
-  const WatchEvidence evidence =
-      weigh(*found, calibration_.hand_from_eye, calibration_.covariance, options_.evidence);
+  WatchEvidence evidence = judge(*found);
   if (evidence.kind == WatchEvidence::Kind::kContradicts) {
     // What looks different each time is noise, or a scene that moves; it begins anew.
     if (found_ && rotation_angle_rad(found_->linear(), found->hand_from_eye.linear()) >

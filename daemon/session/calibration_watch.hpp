@@ -42,13 +42,15 @@ struct WatchStatus {
 };
 
 struct WatchOptions {
-  std::size_t window_frames{40};  ///< that are looked at together
-  std::size_t short_frames{18};   ///< of them the newest, where something changed within them
-  std::int64_t keep_every_ns{110'000'000};  ///< at most: 4 s of motion and more
-  double keep_turn_deg{0.6};                ///< of the hand since the last frame that was kept, or
-  double keep_shift_mm{1.0};                ///< this; well above a tracker's noise
+  std::size_t window_frames{48};  ///< that are looked at together
+  /// Of them the newest, where something may have changed within them.
+  std::size_t middle_frames{32}, short_frames{20};
+  std::int64_t keep_every_ns{70'000'000};  ///< at most: 3.4 s of motion and more
+  double keep_turn_deg{0.6};               ///< of the hand since the last frame that was kept, or
+  double keep_shift_mm{1.0};               ///< this; well above a tracker's noise
   std::int64_t window_age_ns{60'000'000'000};  ///< older frames are forgotten
-  int look_every{8};                           ///< frames kept from one look to the next
+  int look_every{12};                          ///< frames kept from one look to the next
+  int look_again_after{6};                     ///< likewise after a contradiction
   double holds_for_s{30};                      ///< that an agreement is believed for
   int looks_to_doubt{2};                       ///< contradictions in a row
   int looks_to_break{3};                       ///< likewise
@@ -85,7 +87,11 @@ class CalibrationWatch {
   bool keeps(const TrackedFrame& frame, const Pose& room_from_hand) const;
   void keep(const TrackedFrame& frame, const HandLookup& hand);
   void look();
+  bool is_look_due() const;
   std::optional<WatchFit> fit(std::span<const WatchFrame> frames) const;
+  std::optional<WatchFit> fit_newest();
+  bool contradicts(const WatchFit& fit) const;
+  WatchEvidence judge(const WatchFit& fit) const;
   WatchEvidence examine();
   void take(const WatchEvidence& evidence);
 
@@ -97,7 +103,8 @@ class CalibrationWatch {
   std::vector<WatchFrame> window_;
   int since_look_{0};
   int looks_{0};
-  int failed_looks_{0};  ///< in a row: nothing explained what was seen
+  bool contradicted_{false};  ///< by the last look
+  int failed_looks_{0};       ///< in a row: nothing explained what was seen
   int contradictions_{0};
   int agreements_{0};
   bool broken_{false};

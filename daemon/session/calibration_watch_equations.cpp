@@ -1,100 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/session/calibration_watch_equations.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
 namespace handeye {
 namespace {
-
-constexpr int kSettlings = 3;
-/// A point that lies behind an eye counts as an outlier of this many bends of the loss.
-constexpr double kBehind = 30.0;
-
-/// Of a point before an eye, in units of its distance from the anchor.
-constexpr double kNearest = 0.05;
-
-using Matrix23 = Eigen::Matrix<double, 2, 3>;
-
-/// The point as seen from the eye, up to its depth in the anchor's frame.
-Eigen::Vector3d towards(const WatchTrack& track, const Pose& room_from_eye) {
-  const Eigen::Vector3d bearing(track.point.x(), track.point.y(), 1.0);
-  return room_from_eye.linear().transpose() *
-         (track.room_from_anchor.linear() * bearing +
-          track.point.z() * (track.room_from_anchor.translation() - room_from_eye.translation()));
-}
-
-double cauchy_cost(double squared) {
-  return std::log1p(squared);
-}
-
-double inverse_depth_residual(const WatchTrack& track) {
-  return (track.point.z() - kUsualInverseDepth) / kInverseDepthSigma;
-}
-
-/// What the images say about one feature, in units of half a squared standard deviation.
-double track_cost(const WatchTrack& track, const std::vector<Pose>& room_from_eye,
-                  const WatchWeights& weights) {
-  const double bend = weights.robust_image / weights.image;
-  double cost = 0.5 * std::pow(inverse_depth_residual(track), 2);
-  for (const WatchTrack::Sight& sight : track.sights) {
-    const auto seen = watch_ray(track, room_from_eye[static_cast<std::size_t>(sight.frame)]);
-    const double bends = seen ? (*seen - sight.ray).norm() / weights.robust_image : kBehind;
-    cost += 0.5 * bend * bend * cauchy_cost(bends * bends);
-  }
-  return cost;
-}
-
-/// One sight of a point, to first order.
-struct Sighted {
-  Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
-  double weight{0};
-  Eigen::Matrix<double, 2, 6> by_pose;  ///< (w [rad], dc [mm]) of room_from_eye
-  Matrix23 by_point;
-};
-
-/// Nothing where the point is not before the eye.
-std::optional<Sighted> linearise(const WatchTrack& track, const Eigen::Vector2d& measured,
-                                 const Pose& eye, const WatchWeights& weights) {
-  const Eigen::Vector3d seen = towards(track, eye);
-  if (!(seen.z() > kNearest)) return std::nullopt;
-  Sighted sighted;
-  const Eigen::Vector2d ray = seen.hnormalized();
-  sighted.residual = ray - measured;
-  const double bends2 =
-      sighted.residual.squaredNorm() / (weights.robust_image * weights.robust_image);
-  sighted.weight = 1.0 / ((1.0 + bends2) * weights.image * weights.image);
-  Matrix23 by_seen;
-  by_seen << 1.0, 0.0, -ray.x(), 0.0, 1.0, -ray.y();
-  const Matrix23 by_room = by_seen / seen.z() * eye.linear().transpose();
-  // seen = R^T y with y in the room: R -> Exp(w) R makes it R^T (y - w x y) = R^T (y + [y]x w).
-  sighted.by_pose << by_room * skew(eye.linear() * seen), -track.point.z() * by_room;
-  const Matrix23 by_bearing = by_room * track.room_from_anchor.linear();
-  sighted.by_point << by_bearing.leftCols<2>(),
-      by_room * (track.room_from_anchor.translation() - eye.translation());
-  return sighted;
-}
-
-/// Normal equations of a point alone, before its sights.
-struct PointEquations {
-  Eigen::Matrix3d normal{Eigen::Matrix3d::Zero()};
-  Eigen::Vector3d right{Eigen::Vector3d::Zero()};
-
-  explicit PointEquations(const WatchTrack& track) {
-    const double depth_weight = 1.0 / (kInverseDepthSigma * kInverseDepthSigma);
-    // The direction is held, ever so lightly: where no eye sees the point it would be free.
-    normal.diagonal() << 1.0, 1.0, depth_weight;
-    right.z() = -depth_weight * (track.point.z() - kUsualInverseDepth);
-  }
-  void add(const Sighted& sighted) {
-    normal += sighted.weight * sighted.by_point.transpose() * sighted.by_point;
-    right -= sighted.weight * sighted.by_point.transpose() * sighted.residual;
-  }
-};
 
 /// Of what the frames share against where it is held, in standard deviations.
 Eigen::Matrix<double, kWatchCommon, 1> held_residual(const WatchUnknowns& at,
@@ -109,16 +23,11 @@ Eigen::Matrix<double, kWatchCommon, 1> held_residual(const WatchUnknowns& at,
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> watch_ray(const WatchTrack& track, const Pose& room_from_eye) {
-  const Eigen::Vector3d seen = towards(track, room_from_eye);
-  if (!(seen.z() > kNearest)) return std::nullopt;
-  return seen.hnormalized();
-}
-
 double watch_cost(std::span<const WatchFrame> frames, const WatchUnknowns& at,
                   const WatchWeights& weights) {
   double cost = 0;
-  for (const WatchTrack& track : at.tracks) cost += track_cost(track, at.room_from_eye, weights);
+  for (const WatchTrack& track : at.tracks)
+    cost += watch_track_cost(track, at.room_from_eye, weights);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto hand = watch_hand_residual(frames[k], at.room_from_eye[k], at);
     cost += 0.5 * hand.residual.dot(hand.information * hand.residual);
@@ -128,24 +37,25 @@ double watch_cost(std::span<const WatchFrame> frames, const WatchUnknowns& at,
 }
 
 WatchEquations::WatchEquations(std::span<const WatchFrame> frames, const WatchUnknowns& at,
-                               const WatchWeights& weights, double damping) {
+                               const WatchWeights& weights, double damping,
+                               WatchCurvature curvature) {
   const auto size = static_cast<Eigen::Index>(6 * frames.size() + kWatchCommon);
   matrix_.setZero(size, size);
   right_.setZero(size);
-  for (const WatchTrack& track : at.tracks) add_track(track, at, weights);
+  for (const WatchTrack& track : at.tracks) add_track(track, at, weights, curvature);
   add_hands(frames, at);
   add_holds(at, weights);
   matrix_.diagonal() *= 1.0 + damping;
 }
 
 void WatchEquations::add_track(const WatchTrack& track, const WatchUnknowns& at,
-                               const WatchWeights& weights) {
-  PointEquations point(track);
+                               const WatchWeights& weights, WatchCurvature curvature) {
+  WatchPointEquations point(track, weights.depth);
   std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, 6, 3>>> across;
   across.reserve(track.sights.size());
   for (const WatchTrack::Sight& sight : track.sights) {
-    const auto sighted = linearise(
-        track, sight.ray, at.room_from_eye[static_cast<std::size_t>(sight.frame)], weights);
+    const auto sighted = watch_sighted(
+        track, sight, at.room_from_eye[static_cast<std::size_t>(sight.frame)], weights);
     if (!sighted) continue;
     point.add(*sighted);
     const auto row = static_cast<Eigen::Index>(6 * sight.frame);
@@ -153,6 +63,13 @@ void WatchEquations::add_track(const WatchTrack& track, const WatchUnknowns& at,
     matrix_.block<6, 6>(row, row) += weighted * sighted->by_pose;
     right_.segment<6>(row) -= weighted * sighted->residual;
     across.emplace_back(row, weighted * sighted->by_point);
+    if (curvature == WatchCurvature::kNewton) {
+      across.back().second.bottomRightCorner<3, 1>() +=
+          sighted->weight * sighted->depth_by_shift.transpose() * sighted->residual;
+    }
+  }
+  if (point.stay_within(track, weights.depth)) {
+    for (auto& [row, by_point] : across) by_point.col(2).setZero();
   }
   const Eigen::Matrix3d inverse = point.normal.inverse();
   for (std::size_t i = 0; i < across.size(); ++i) {
@@ -210,26 +127,6 @@ std::optional<double> WatchEquations::step(std::span<const WatchFrame> frames,
   common.hand_from_eye.translation() += moved.segment<3>(3);
   carry_eyes(frames, common, step.head(step.size() - kWatchCommon), unknowns);
   return 0.5 * step.dot(right_);
-}
-
-void settle_points(const WatchWeights& weights, WatchUnknowns& unknowns) {
-  for (WatchTrack& track : unknowns.tracks) {
-    double cost = track_cost(track, unknowns.room_from_eye, weights);
-    for (int settling = 0; settling < kSettlings; ++settling) {
-      PointEquations point(track);
-      for (const WatchTrack::Sight& sight : track.sights) {
-        const Pose& eye = unknowns.room_from_eye[static_cast<std::size_t>(sight.frame)];
-        if (const auto sighted = linearise(track, sight.ray, eye, weights)) point.add(*sighted);
-      }
-      WatchTrack next = track;
-      next.point += point.normal.inverse() * point.right;
-      next.point.z() = std::clamp(next.point.z(), kLeastInverseDepth, kLargestInverseDepth);
-      const double next_cost = track_cost(next, unknowns.room_from_eye, weights);
-      if (!(next_cost < cost)) break;
-      track.point = next.point;
-      cost = next_cost;
-    }
-  }
 }
 
 }  // namespace handeye

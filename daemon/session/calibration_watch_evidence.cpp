@@ -23,8 +23,8 @@ struct Seen {
   double chi2{0};
   std::size_t directions{0};
 
-  bool contradicts(double least) const {
-    return directions > 0 && size > least && chi2 > kContradiction[directions];
+  bool contradicts(double least, double lasting) const {
+    return directions > 0 && size > least && chi2 > lasting * kContradiction[directions];
   }
 };
 
@@ -59,8 +59,10 @@ WatchEvidence weigh(const WatchFit& fit, const Pose& hand_from_eye, const Matrix
   evidence.sigma_deg = deg_from_rad(turn.sigma);
   evidence.measured = turn.directions > 0;
   if (!fit.converged || !explains(fit)) return evidence;
-  if (turn.contradicts(rad_from_deg(options.turned_deg))) {
-    if (fit.gain > kLeastGain) evidence.kind = WatchEvidence::Kind::kContradicts;
+  const double least_rad = rad_from_deg(options.turned_deg);
+  if (turn.contradicts(least_rad, 1.0)) {
+    const bool beyond_doubt = turn.contradicts(least_rad, fit.lasting) && fit.gain > kLeastGain;
+    if (beyond_doubt) evidence.kind = WatchEvidence::Kind::kContradicts;
   } else if (turn.directions == 3) {
     evidence.kind = WatchEvidence::Kind::kAgrees;
   }

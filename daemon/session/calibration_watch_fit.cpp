@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Dense>
+
+#include "daemon/session/calibration_watch_descent.hpp"
+#include "daemon/session/calibration_watch_residuals.hpp"
 
 namespace handeye {
 namespace {
@@ -17,10 +19,15 @@ constexpr double kBend = 4.0;
 /// Features are off for as long as they live: measured, the rotation's variance is 1.2 times what
 /// independent errors make it, where features walk off a lot more.
 constexpr double kCorrelation = 1.3;
-/// Expected fall of the cost by another step, of which 0.5 is one standard deviation.
-constexpr double kConverged = 0.05;
-/// Of a feature that goes its own way, in what features are off usually.
-constexpr double kWild = 3.0;
+/// Iterations with the loss, before it is settled which sights are believed.
+constexpr int kChoosing = 6, kChoosingOn = 4;
+/// Features that slide are seen only when all else fits.
+constexpr WatchWild kFirstWild{.most_times = 3.0, .most_sigmas = 0.0};
+constexpr WatchWild kWild{.most_times = 1.0, .most_sigmas = 4.0};
+/// What the hand's residuals are larger than they should be by more than chance is taken for an
+/// error that lasts over so many frames.
+constexpr double kUsualExcess = 1.1;
+constexpr double kLastingFrames = 20.0;
 /// What a fit without the calibration gains by chance; more is to be looked at closely.
 constexpr double kUsualGain = 20.0;
 constexpr int kMostClosely = 40;  ///< iterations
@@ -48,108 +55,25 @@ WatchUnknowns begin_at(std::span<const WatchFrame> frames, const Pose& hand_from
   return at;
 }
 
-struct Descent {
-  int iterations{0};
-  bool converged{false};
-};
-
-/// Levenberg-Marquardt.
-Descent minimise(std::span<const WatchFrame> frames, const WatchWeights& weights, int most,
-                 WatchUnknowns& at) {
-  settle_points(weights, at);
-  double cost = watch_cost(frames, at, weights);
-  double damping = 1e-5;
-  Descent descent;
-  while (descent.iterations < most && damping < 1e3) {
-    ++descent.iterations;
-    WatchUnknowns next = at;
-    const auto expected = WatchEquations(frames, at, weights, damping).step(frames, next);
-    descent.converged = expected && *expected < kConverged && damping < 1e-2;
-    if (expected) settle_points(weights, next);
-    const double next_cost =
-        expected ? watch_cost(frames, next, weights) : std::numeric_limits<double>::infinity();
-    if (next_cost < cost) {
-      at = std::move(next);
-      cost = next_cost;
-      damping = std::max(1e-9, 0.1 * damping);
-    } else {
-      damping = std::max(damping, 1e-5) * 10.0;
-    }
-    if (descent.converged) break;
-  }
-  return descent;
-}
-
-double mean_error(const WatchTrack& track, const std::vector<Pose>& room_from_eye) {
-  double squared = 0;
-  for (const WatchTrack::Sight& sight : track.sights) {
-    const auto seen = watch_ray(track, room_from_eye[static_cast<std::size_t>(sight.frame)]);
-    squared += seen ? (*seen - sight.ray).squaredNorm() : 1.0;
-  }
-  return std::sqrt(squared / static_cast<double>(track.sights.size()));
-}
-
-/// Leaves out features that slide, or are no point: sight by sight a robust loss would go on
-/// choosing which of theirs to believe, and the descent never ends.
-void leave_out_wild_tracks(double image_noise, WatchUnknowns& at) {
-  std::vector<double> errors;
-  for (const WatchTrack& track : at.tracks) errors.push_back(mean_error(track, at.room_from_eye));
-  std::vector<double> sorted = errors;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  const double most = kWild * std::max(*middle, image_noise);
-  std::vector<WatchTrack> steady;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (errors[i] <= most) steady.push_back(std::move(at.tracks[i]));
-  }
-  at.tracks = std::move(steady);
-}
-
-struct ImageResiduals {
-  double squared{0};  ///< of the inliers
-  std::size_t inliers{0}, sights{0};
-  std::size_t tracks{0};  ///< that have inliers
-};
-
-ImageResiduals image_residuals(const WatchUnknowns& at, const WatchWeights& weights) {
-  ImageResiduals found;
-  for (const WatchTrack& track : at.tracks) {
-    bool any = false;
-    for (const WatchTrack::Sight& sight : track.sights) {
-      ++found.sights;
-      const auto seen = watch_ray(track, at.room_from_eye[static_cast<std::size_t>(sight.frame)]);
-      if (!seen || (*seen - sight.ray).norm() > weights.robust_image) continue;
-      found.squared += (*seen - sight.ray).squaredNorm();
-      ++found.inliers;
-      any = true;
-    }
-    found.tracks += any ? 1 : 0;
-  }
-  return found;
-}
-
-double hand_chi2(std::span<const WatchFrame> frames, const WatchUnknowns& at) {
-  double chi2 = 0;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const auto hand = watch_hand_residual(frames[k], at.room_from_eye[k], at);
-    chi2 += hand.residual.dot(hand.information * hand.residual);
-  }
-  return chi2;
-}
-
 /// The cost with hand_from_eye held near the calibration, found from what explains the frames best
 /// without: where the calibration can explain the same points and eyes, it is not to blame.
-Descent hold_again(std::span<const WatchFrame> frames, const WatchWeights& held,
-                   const Pose& calibrated, WatchUnknowns at, WatchFit& fit) {
+WatchDescent hold_again(std::span<const WatchFrame> frames, const WatchWeights& held,
+                        const Pose& calibrated, WatchUnknowns at, WatchFit& fit) {
   const WatchUnknowns common{.hand_from_eye = calibrated,
                              .time_offset_correction_s = at.time_offset_correction_s};
   const auto size = static_cast<Eigen::Index>(6 * frames.size());
   carry_eyes(frames, common, Eigen::VectorXd::Zero(size), at);
   at.start = calibrated;
-  const Descent descent = minimise(frames, held, kMostClosely, at);
+  const WatchDescent descent = watch_descend(frames, held, kMostClosely, at);
   fit.held_cost = watch_cost(frames, at, held);
   fit.iterations += descent.iterations;
   return descent;
+}
+
+/// As the residuals show it, or as far as it hides in hand_from_eye and shows in their size alone.
+double lasting(double shown, const WatchFit& fit) {
+  const double hidden = 1.0 + kLastingFrames * std::max(0.0, fit.hand_excess - kUsualExcess);
+  return std::max(shown, hidden / std::max({1.0, fit.hand_excess, fit.image_excess}));
 }
 
 /// What the equations at the answer say about it.
@@ -167,16 +91,16 @@ bool conclude(std::span<const WatchFrame> frames, const WatchUnknowns& at,
     const auto row = static_cast<Eigen::Index>(6 * k);
     freedom += 6.0 - (hand.information * covariance.block<6, 6>(row, row)).trace();
   }
-  const ImageResiduals image = image_residuals(at, weights);
+  const WatchImageResiduals image = watch_image_residuals(at, kBend * weights.image);
   const double all = 2.0 * static_cast<double>(image.inliers) -
                      3.0 * static_cast<double>(image.tracks) - kWatchCommon;
-  fit.hand_excess = hand_chi2(frames, at) / std::max(1.0, freedom);
+  fit.hand_excess = watch_hand_chi2(frames, at) / std::max(1.0, freedom);
   fit.image_excess = image.squared / (weights.image * weights.image) / std::max(1.0, all - freedom);
   fit.outliers = 1.0 - static_cast<double>(image.inliers) / static_cast<double>(image.sights);
-  fit.covariance = kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess}) *
-                   covariance.block<6, 6>(common, common);
-  fit.gain = 2.0 * (fit.held_cost - fit.cost) /
-             (kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess}));
+  const double widened = kCorrelation * std::max({1.0, fit.hand_excess, fit.image_excess});
+  fit.covariance = widened * covariance.block<6, 6>(common, common);
+  fit.lasting = lasting(watch_hand_lasting(frames, at), fit);
+  fit.gain = 2.0 * (fit.held_cost - fit.cost) / (widened * fit.lasting);
   fit.hand_from_eye = at.hand_from_eye;
   return fit.covariance.allFinite() && std::isfinite(fit.cost);
 }
@@ -194,29 +118,36 @@ std::optional<WatchFit> watch_fit(std::span<const WatchFrame> frames, const Pose
                     .hold_rotation_rad = options.held_rotation_rad,
                     .hold_translation_mm = options.held_translation_mm};
   WatchFit fit;
-  fit.iterations = minimise(frames, held, options.max_iterations / 2, at).iterations;
-  leave_out_wild_tracks(options.image_noise, at);
+  const auto descend = [&](const WatchWeights& weights, int most) {
+    const WatchDescent descent = watch_descend(frames, weights, most, at);
+    fit.iterations += descent.iterations;
+    return descent;
+  };
+  descend(held, options.max_iterations / 2);
+  leave_out_wild_tracks(options.image_noise, held.depth, kFirstWild, at);
+  held.depth = scene_depth(at);
   held.robust_image = kBend * options.image_noise;
-  fit.iterations += minimise(frames, held, options.max_iterations, at).iterations;
+  descend(held, options.max_iterations);
   fit.held_cost = watch_cost(frames, at, held);
 
   WatchWeights free = held;
   free.hold_rotation_rad = kFree_rad;
   free.hold_translation_mm = kFree_mm;
-  Descent descent = minimise(frames, free, 2 * options.max_iterations, at);
-  fit.iterations += descent.iterations;
-  const bool suspicious = 2.0 * (fit.held_cost - watch_cost(frames, at, free)) > kUsualGain ||
-                          !start.isApprox(calibrated);
-  const double hopeless = kHopeless * 6.0 * static_cast<double>(frames.size());
-  if (suspicious && hand_chi2(frames, at) < hopeless) {
-    leave_out_wild_tracks(options.image_noise, at);
-    descent = minimise(frames, free, kMostClosely, at);
-    fit.iterations += descent.iterations;
-    const Descent again = hold_again(frames, held, calibrated, at, fit);
-    const double left = 2.0 * (fit.held_cost - watch_cost(frames, at, free));
-    descent.converged &= again.converged || left > kBeyondReach;
-  }
+  descend(free, kChoosing);
+  leave_out_wild_tracks(options.image_noise, free.depth, kWild, at);
+  descend(free, kChoosingOn);
+  const double gained = fit.held_cost - watch_cost(frames, at, free);
+  freeze_trust(free, at);
+  free.robust_image = held.robust_image = 0;
+  WatchDescent descent = descend(free, std::min(kMostClosely, 4 * options.max_iterations));
   fit.cost = watch_cost(frames, at, free);
+  fit.held_cost = fit.cost + gained;
+  const bool suspicious = 2.0 * gained > kUsualGain || !start.isApprox(calibrated);
+  const double hopeless = kHopeless * 6.0 * static_cast<double>(frames.size());
+  if (suspicious && watch_hand_chi2(frames, at) < hopeless) {
+    const WatchDescent again = hold_again(frames, held, calibrated, at, fit);
+    descent.converged &= again.converged || 2.0 * (fit.held_cost - fit.cost) > kBeyondReach;
+  }
   fit.converged = descent.converged;
   if (!conclude(frames, at, free, fit)) return std::nullopt;
   return fit;

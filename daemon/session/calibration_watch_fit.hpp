@@ -28,9 +28,12 @@ struct WatchFit {
   Matrix6d covariance{Matrix6d::Zero()};
   double hand_excess{0};   ///< variance of the hand's residuals over what was assumed
   double image_excess{0};  ///< likewise of the images', outliers aside
-  double outliers{0};      ///< share of the sights beyond the bend of the loss
-  double cost{0};          ///< 0.5 is a standard deviation squared
-  double held_cost{0};     ///< the same with hand_from_eye held near the calibration
+  /// By how many times both sides of a comparison are less sure than the covariance says, because
+  /// errors of the hand last from frame to frame.
+  double lasting{1};
+  double outliers{0};   ///< share of the sights beyond the bend of the loss
+  double cost{0};       ///< 0.5 is a standard deviation squared
+  double held_cost{0};  ///< the same with hand_from_eye held near the calibration
   /// Of the likelihood by letting go of the calibration, in chi2 of six degrees of freedom, widened
   /// alike.
   double gain{0};

@@ -2,13 +2,18 @@
 #include "daemon/session/calibration_watch_frame.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 
-#include "daemon/session/calibration_watch_equations.hpp"
+#include "daemon/session/calibration_watch_points.hpp"
 
 namespace handeye {
 namespace {
+
+/// Of a ray, as far as the eye is off, beside which a scene's depth is known beforehand: points
+/// that were laid by less are laid before the lens.
+constexpr double kPlaceNoise = 0.005;
 
 /// An interpolated pose is better than a sample (docs/math.md section 8).
 double variance_factor(double fraction) {
@@ -69,8 +74,10 @@ void place_points(std::span<const Pose> room_from_eye, std::vector<WatchTrack>& 
     track.anchor = middle.frame;
     track.room_from_anchor = room_from_eye[static_cast<std::size_t>(middle.frame)];
     // u x (a + rho b) = 0 in every frame is linear in the inverse depth rho.
-    double normal = kInverseDepthWeight;
-    double right = kInverseDepthWeight * kUsualInverseDepth;
+    const WatchDepth depth;
+    const double known = std::pow(kPlaceNoise / depth.sigma, 2);
+    double normal = known;
+    double right = known * depth.usual;
     for (const WatchTrack::Sight& sight : track.sights) {
       const Pose& pose = room_from_eye[static_cast<std::size_t>(sight.frame)];
       const Eigen::Vector3d a =
@@ -82,7 +89,7 @@ void place_points(std::span<const Pose> room_from_eye, std::vector<WatchTrack>& 
       normal += by_depth.squaredNorm();
       right -= by_depth.dot(apart);
     }
-    track.point << middle.ray, std::clamp(right / normal, kLeastInverseDepth, kLargestInverseDepth);
+    track.point << middle.ray, std::clamp(right / normal, depth.least, depth.largest);
   }
 }
 

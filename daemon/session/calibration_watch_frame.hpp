@@ -46,6 +46,7 @@ struct WatchTrack {
   struct Sight {
     int frame{0};
     Eigen::Vector2d ray{Eigen::Vector2d::Zero()};
+    double trust{1};  ///< in it: its weight is so much smaller
   };
   int anchor{0};  ///< the frame whose eye it was
   Pose room_from_anchor{Pose::Identity()};

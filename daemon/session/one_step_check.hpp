@@ -10,7 +10,7 @@ namespace handeye {
 /// and eye were the tracker's: the likelihood's is of a pose interpolated between two samples,
 /// which has less, and splits the translation's in halves that it cannot tell apart. Of the hand
 /// only.
-PoseNoise noise_of_samples(const PoseNoise& of_likelihood, const OneStepProblem& problem);
+PoseNoise noise_of_samples(const PoseNoise& of_likelihood);
 
 /// Whether an answer fits the tracker as the likelihood's, which has seen less, did: its residuals
 /// are no more than twice the noise that explains the likelihood's, and it left out no more than a

@@ -27,13 +27,12 @@ bool is_measured(const OneStepProblem& problem) {
 }
 
 /// An estimate of the tracker's noise starts from what explains the likelihood's residuals.
-OneStepOptions options_for(const Lens& lens, const OneStepProblem& problem, const Estimate& start,
-                           HandNoiseSource hand_noise) {
+OneStepOptions options_for(const Lens& lens, const Estimate& start, HandNoiseSource hand_noise) {
   OneStepOptions options;
   if (lens.mode != IntrinsicsMode::kFixed) options.lens = lens.prior;
   const bool estimated = hand_noise == HandNoiseSource::kEstimated;
   const PoseNoise noise =
-      estimated ? noise_of_samples(start.likelihood->noise, problem) : start.options.noise;
+      estimated ? noise_of_samples(start.likelihood->noise) : start.options.noise;
   options.hand_rotation_sigma_rad = noise.hand_rotation_rad;
   options.hand_translation_sigma_mm = noise.hand_translation_mm;
   options.hand_noise = hand_noise;
@@ -82,7 +81,7 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
     if (estimate.hand_noise == HandNoiseSource::kMeasured && !is_measured(problem)) {
       estimate.hand_noise = HandNoiseSource::kEstimated;
     }
-    estimate.options = options_for(reconstruction.lens, problem, start, estimate.hand_noise);
+    estimate.options = options_for(reconstruction.lens, start, estimate.hand_noise);
     auto found = one_step(problem, estimate.start, estimate.options);
     if (!found) return std::nullopt;
     if (!explains_the_hand(*found, problem, estimate.options, start.likelihood->noise)) {

@@ -4,19 +4,35 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "daemon/geometry/median.hpp"
+#include "daemon/sync/hand_smoothing.hpp"
 
 namespace handeye {
 namespace {
 
-std::optional<HandAtFrame> hand_at(std::int64_t timestamp_ns, const PoseBuffer& hand) {
-  const HandLookup found = hand.lookup(timestamp_ns);
-  if (found.status != LookupStatus::kOk) return std::nullopt;
-  return HandAtFrame{.room_from_hand = found.room_from_hand,
-                     .angular_velocity = found.angular_velocity,
-                     .velocity = found.velocity,
-                     .sample = found.sample,
-                     .fraction = found.fraction,
-                     .sample_covariance = found.sample_covariance};
+constexpr std::int64_t kLongestReach_ns = 60'000'000;
+
+std::optional<HandAtFrame> hand_at(std::int64_t timestamp_ns, const HandSmoothing& hand) {
+  auto found = hand.at(timestamp_ns);
+  if (!found) return std::nullopt;
+  return HandAtFrame{.room_from_hand = found->room_from_hand,
+                     .angular_velocity = found->angular_velocity,
+                     .velocity = found->velocity,
+                     .sample = found->sample,
+                     .shares = std::move(found->shares),
+                     .sample_covariance = found->sample_covariance};
+}
+
+/// One and a half periods of the frames, as far as a hand may be smoothed over.
+std::int64_t reach_ns(const std::vector<RegisteredFrame>& frames) {
+  std::vector<double> periods_ns;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    periods_ns.push_back(static_cast<double>(frames[k].timestamp_ns - frames[k - 1].timestamp_ns));
+  }
+  return std::min(static_cast<std::int64_t>(1.5 * median(std::move(periods_ns))), kLongestReach_ns);
 }
 
 bool is_placed_by_what_it_saw(const RegisteredFrame& frame) {
@@ -43,6 +59,7 @@ OneStepProblem one_step_problem(const Reconstruction& reconstruction, const Pose
                                 double time_offset_s) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
   OneStepProblem problem{.camera = reconstruction.lens.camera};
+  const HandSmoothing smoothing(hand, {.reach_ns = reach_ns(reconstruction.frames)});
   problem.frames.reserve(reconstruction.frames.size());
   for (const RegisteredFrame& frame : reconstruction.frames) {
     OneStepFrame& one =
@@ -50,7 +67,8 @@ OneStepProblem one_step_problem(const Reconstruction& reconstruction, const Pose
                                                  .part = frame.part,
                                                  .keyframe = frame.keyframe,
                                                  .unit_covariance = frame.unit_covariance});
-    if (is_placed_by_what_it_saw(frame)) one.hand = hand_at(frame.timestamp_ns - offset_ns, hand);
+    if (is_placed_by_what_it_saw(frame))
+      one.hand = hand_at(frame.timestamp_ns - offset_ns, smoothing);
   }
   problem.points.reserve(reconstruction.structure.size());
   for (const ScenePoint& point : reconstruction.structure) {

@@ -138,7 +138,6 @@ bool PoseBuffer::apart(std::size_t index) const {
   return a.clock_epoch != b.clock_epoch || b.timestamp_ns - a.timestamp_ns > bridged_gap_ns();
 }
 
-/// Whether one may interpolate between this sample and the next.
 bool PoseBuffer::joined(std::size_t index) const {
   return at(index).tracked && at(index + 1).tracked && !apart(index);
 }

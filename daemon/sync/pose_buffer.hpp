@@ -83,7 +83,16 @@ class PoseBuffer {
   void clear();
 
   std::size_t size() const { return size_; }
-  const HandSample& at(std::size_t index) const;                ///< 0 is the oldest
+  const HandSample& at(std::size_t index) const;  ///< 0 is the oldest
+  /// Of a sample as HandLookup counts them, which must still be there.
+  std::size_t index_of(std::int64_t sample) const {
+    return static_cast<std::size_t>(sample - forgotten_);
+  }
+  std::int64_t number_of(std::size_t index) const {
+    return forgotten_ + static_cast<std::int64_t>(index);
+  }
+  /// Whether one may interpolate between this sample and the next.
+  bool joined(std::size_t index) const;
   std::uint64_t out_of_order() const { return out_of_order_; }  ///< dropped
   std::uint64_t duplicates() const { return duplicates_; }      ///< dropped
   std::uint64_t reordered() const { return reordered_; }        ///< late, but in time to be kept
@@ -95,7 +104,6 @@ class PoseBuffer {
   void insert(std::size_t index, const HandSample& sample);
   void learn_period(std::int64_t interval_ns);
   bool apart(std::size_t index) const;
-  bool joined(std::size_t index) const;
   void add_velocity(std::size_t before, HandLookup& found) const;
 
   PoseBufferOptions options_;

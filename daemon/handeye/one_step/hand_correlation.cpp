@@ -10,13 +10,19 @@ constexpr double kChance = 2.5;  // standard deviations of a correlation
 
 }  // namespace
 
+bool share_samples(const HandAtFrame& earlier, const HandAtFrame& later) {
+  return later.sample < earlier.sample + static_cast<std::int64_t>(earlier.shares.size());
+}
+
 double shared_variance(const HandAtFrame& first, const HandAtFrame& second) {
   const HandAtFrame& early = first.sample <= second.sample ? first : second;
   const HandAtFrame& late = first.sample <= second.sample ? second : first;
-  const double a = early.fraction;
-  const double b = late.fraction;
-  if (early.sample == late.sample) return (1.0 - a) * (1.0 - b) + a * b;
-  return late.sample == early.sample + 1 ? a * (1.0 - b) : 0.0;
+  const auto later_by = static_cast<std::size_t>(late.sample - early.sample);
+  double shared = 0;
+  for (std::size_t i = 0; i < late.shares.size() && later_by + i < early.shares.size(); ++i) {
+    shared += early.shares[later_by + i] * late.shares[i];
+  }
+  return shared;
 }
 
 Matrix6d shared_covariance(const MetricProblem& problem, const HandRow& first,

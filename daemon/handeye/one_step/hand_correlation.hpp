@@ -5,8 +5,11 @@
 
 namespace handeye {
 
-/// The covariance of two frames' tracker errors for a variance of one sample of 1: frames between
-/// the same two samples share both, neighbours one (docs/math.md section 8).
+/// Whether a sample has a share in both; the frames after one that does not share none, either.
+bool share_samples(const HandAtFrame& earlier, const HandAtFrame& later);
+
+/// The covariance of two frames' tracker errors for a variance of one sample of 1, by the shares
+/// that both have in the same samples (docs/math.md section 8).
 double shared_variance(const HandAtFrame& first, const HandAtFrame& second);
 
 /// Likewise of their whitened residuals, rows of the problem; 6x6. Zero where they share nothing.

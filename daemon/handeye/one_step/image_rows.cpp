@@ -31,13 +31,17 @@ Matrix26 pixel_by_eye(const ImageRow& row) {
   return result;
 }
 
-bool linearise(const MetricScene& scene, const MetricState& state, double huber_px, bool lens_free,
+bool linearise(const MetricScene& scene, const MetricState& state,
+               const std::vector<double>& track_weights, double huber_px, bool lens_free,
                ImageRows& rows) {
   if (state.camera.problem()) return false;
   const std::vector<Eye> eyes = eyes_of(state);
   rows.rows.resize(scene.observations.size());
   rows.cost = rows.weighted_squares = rows.squares = 0;
+  rows.squares_of_tracks.assign(scene.points(), 0.0);
   for (std::size_t j = 0; j < scene.points(); ++j) {
+    const double track_root = std::sqrt(track_weights[j]);
+    double of_track = 0;
     for (std::size_t i = scene.first_of_point[j]; i < scene.first_of_point[j + 1]; ++i) {
       const MetricObservation& seen = scene.observations[i];
       const Eye& eye = eyes[seen.keyframe];
@@ -51,19 +55,22 @@ bool linearise(const MetricScene& scene, const MetricState& state, double huber_
       if (lens_free) row.by_lens = pixel_by_lens(state.camera, point_eye);
       const double square = row.error.squaredNorm();
       rows.squares += square;
-      if (square > huber_px * huber_px) {
-        const double norm = std::sqrt(square);
+      double root = track_root;
+      const double norm = track_root * std::sqrt(square);
+      if (norm > huber_px) {
         rows.cost += huber_px * (norm - 0.5 * huber_px);
-        rows.weighted_squares += huber_px * norm;
-        const double weight = std::sqrt(huber_px / norm);
-        row.error *= weight;
-        row.by_point *= weight;
-        if (lens_free) row.by_lens *= weight;
+        of_track += huber_px * norm;
+        root *= std::sqrt(huber_px / norm);
       } else {
-        rows.cost += 0.5 * square;
-        rows.weighted_squares += square;
+        rows.cost += 0.5 * norm * norm;
+        of_track += norm * norm;
       }
+      row.error *= root;
+      row.by_point *= root;
+      if (lens_free) row.by_lens *= root;
     }
+    rows.weighted_squares += of_track;
+    rows.squares_of_tracks[j] = of_track / track_weights[j];
   }
   return std::isfinite(rows.cost);
 }

@@ -27,12 +27,16 @@ struct ImageRows {
   std::vector<ImageRow> rows;  ///< as MetricScene::observations
   double cost{0};              ///< sum of Huber's loss [px^2]
   double weighted_squares{0};  ///< [px^2]
-  double squares{0};           ///< without the loss's weight [px^2]
+  double squares{0};           ///< without any weight [px^2]
+  /// Of each point's observations, by the loss's weight alone [px^2].
+  std::vector<double> squares_of_tracks;
 };
 
 /// Nothing where a point is behind an eye that sees it, or the lens is none. `huber_px`: of the
-/// norm of an error. `rows` is overwritten: its memory is used again.
-bool linearise(const MetricScene& scene, const MetricState& state, double huber_px, bool lens_free,
+/// norm of an error of a track whose weight is 1; `track_weights`: of the squares, one a point.
+/// `rows` is overwritten: its memory is used again.
+bool linearise(const MetricScene& scene, const MetricState& state,
+               const std::vector<double>& track_weights, double huber_px, bool lens_free,
                ImageRows& rows);
 
 /// The gradient of the cost [px^2] by all unknowns.

@@ -55,9 +55,9 @@ CommonMatrix shared_part(const MetricProblem& problem, const std::vector<RowByCo
   const std::vector<MetricFrame>& frames = problem.scene().frames;
   CommonMatrix sum = CommonMatrix::Zero();
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const std::int64_t sample = frames[rows[k].frame].hand->sample;
+    const HandAtFrame& hand = *frames[rows[k].frame].hand;
     for (std::size_t other = k + 1; other < rows.size(); ++other) {
-      if (frames[rows[other].frame].hand->sample > sample + 1) break;
+      if (!share_samples(hand, *frames[rows[other].frame].hand)) break;
       const CommonMatrix product = answers[k].transpose() *
                                    shared_covariance(problem, rows[k], rows[other]) *
                                    answers[other];

@@ -15,7 +15,9 @@ double square(double x) {
 }  // namespace
 
 double interpolated_variance(const HandAtFrame& hand) {
-  return square(1.0 - hand.fraction) + square(hand.fraction);
+  double variance = 0;
+  for (const double share : hand.shares) variance += square(share);
+  return variance;
 }
 
 Matrix6d sample_covariance(const HandAtFrame& hand, const MetricNoise& noise, bool measured) {

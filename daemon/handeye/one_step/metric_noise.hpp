@@ -7,14 +7,16 @@
 
 namespace handeye {
 
-/// Standard deviations per axis.
+/// Standard deviations per axis, and how they differ from track to track.
 struct MetricNoise {
   double image_px{0};
   double hand_rotation_rad{0};    ///< of one sample of the tracker
   double hand_translation_mm{0};  ///< likewise
+  /// What each point's observations count for (track_weights.hpp); empty: all alike.
+  std::vector<double> track_weights;
 };
 
-/// What interpolating between two samples leaves of the variance of one: (1-a)^2 + a^2.
+/// What the samples' shares leave of the variance of one: between two (1-a)^2 + a^2.
 double interpolated_variance(const HandAtFrame& hand);
 
 /// Covariance of (w, dt) of one sample, in the room; `measured`: as the tracker itself says, where

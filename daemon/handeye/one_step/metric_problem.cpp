@@ -69,7 +69,9 @@ double MetricProblem::prior_cost(const MetricState& state) const {
 
 bool MetricProblem::evaluate(const MetricState& state, Place& place) const {
   const double huber_px = huber_of_image_.norm * noise_.image_px;
-  if (!linearise(scene_, state, huber_px, lens_free(), place.rows)) return false;
+  if (!linearise(scene_, state, noise_.track_weights, huber_px, lens_free(), place.rows)) {
+    return false;
+  }
   if (scene_.has_followers()) place.sighted = keyframes_by_sight(scene_, state, place.rows);
   const std::vector<Pose>& at_start = sighted_at_start_.empty() ? place.sighted : sighted_at_start_;
   place.eyes = eyes_of_frames(scene_, state, at_start, place.sighted);
@@ -105,9 +107,12 @@ void MetricProblem::eliminate_points() {
   eliminated_ = at_elimination_ = true;
 }
 
-void MetricProblem::set_noise(const MetricNoise& noise) {
-  noise_ = noise;
-  hands_.weights = hand_weights(scene_, here_.eyes, state_, noise,
+void MetricProblem::set_noise(MetricNoise noise) {
+  if (noise.track_weights.empty()) noise.track_weights.assign(scene_.points(), 1.0);
+  // The images' equations were linearised with the old weights.
+  if (noise.track_weights != noise_.track_weights) eliminated_ = false;
+  noise_ = std::move(noise);
+  hands_.weights = hand_weights(scene_, here_.eyes, state_, noise_,
                                 options_.hand_noise == HandNoiseSource::kMeasured);
 }
 
@@ -121,7 +126,7 @@ bool MetricProblem::retreat(double& damping) {
 }
 
 Minimisation MetricProblem::minimise(MetricNoise noise) {
-  set_noise(noise);
+  set_noise(std::move(noise));
   if (!evaluate(state_, here_)) return Minimisation::kNothing;
   // The first time is at the start.
   if (sighted_at_start_.empty()) sighted_at_start_ = here_.sighted;

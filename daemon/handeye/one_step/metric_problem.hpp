@@ -47,6 +47,7 @@ class MetricProblem {
   const NormalEquations& equations() const { return equations_; }
   double cost() const { return here_.cost; }
   double image_squares() const { return here_.rows.squares; }  ///< [px^2]
+  const ImageRows& image_rows() const { return here_.rows; }
   /// Likewise weighted by the loss, and made good for what the loss takes from inliers.
   double robust_image_squares() const;
   /// What the loss leaves of the squares of tracker residuals that are inliers.
@@ -78,7 +79,7 @@ class MetricProblem {
   void eliminate_points();
   /// From a step that was none to where the cost was least, to damp it there; false as `evaluate`.
   bool retreat(double& damping);
-  void set_noise(const MetricNoise& noise);
+  void set_noise(MetricNoise noise);
 
   const MetricScene& scene_;
   OneStepOptions options_;

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "daemon/geometry/projection.hpp"
+#include "daemon/handeye/one_step/sound_problem.hpp"
 #include "daemon/handeye/usable.hpp"
 
 namespace handeye {
@@ -33,33 +34,6 @@ struct Placement {
     return room_from_eye;
   }
 };
-
-bool is_finite(const OneStepFrame& frame) {
-  if (!is_usable(frame.eye_from_scene) || !frame.unit_covariance.allFinite()) return false;
-  if (!frame.hand) return true;
-  const HandAtFrame& hand = *frame.hand;
-  return is_usable(hand.room_from_hand) && hand.angular_velocity.allFinite() &&
-         hand.velocity.allFinite() && hand.fraction >= 0.0 && hand.fraction <= 1.0 &&
-         (!hand.sample_covariance || hand.sample_covariance->allFinite());
-}
-
-/// Numbers are numbers and what refers to frames refers to keyframes of the same part.
-bool is_sound(const OneStepProblem& problem) {
-  if (problem.camera.problem()) return false;
-  if (!std::ranges::all_of(problem.frames, is_finite)) return false;
-  return std::ranges::all_of(problem.points, [&](const OneStepPoint& point) {
-    return point.point_scene.allFinite() &&
-           std::ranges::all_of(point.observations,
-                               [&](const OneStepPoint::Observation& seen) {
-                                 if (seen.frame < 0 || !seen.pixel.allFinite()) return false;
-                                 const auto at = static_cast<std::size_t>(seen.frame);
-                                 return at < problem.frames.size() && problem.frames[at].keyframe &&
-                                        problem.frames[at].part == point.part;
-                               }) &&
-           std::ranges::is_sorted(point.observations, std::ranges::less_equal{},
-                                  &OneStepPoint::Observation::frame);
-  });
-}
 
 const PartResult* used_part(const MaximumLikelihoodResult& start, int number) {
   const auto found = std::ranges::find(start.parts, number, &PartResult::number);

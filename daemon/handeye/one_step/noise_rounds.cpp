@@ -25,7 +25,8 @@ bool changes(double from, double to) {
 bool changes(const MetricNoise& from, const MetricNoise& to) {
   return changes(from.image_px, to.image_px) ||
          changes(from.hand_rotation_rad, to.hand_rotation_rad) ||
-         changes(from.hand_translation_mm, to.hand_translation_mm);
+         changes(from.hand_translation_mm, to.hand_translation_mm) ||
+         from.track_weights != to.track_weights;
 }
 
 /// Which hands agree with the camera at this noise. Where it was given as less than what most hands

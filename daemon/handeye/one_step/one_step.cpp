@@ -33,8 +33,10 @@ double hand_freedom(const MetricProblem& problem) {
 /// Against the noise of the options.
 double chi2_as_assumed(const MetricProblem& problem) {
   const OneStepOptions& options = problem.options();
-  const MetricNoise assumed{problem.noise().image_px, options.hand_rotation_sigma_rad,
-                            options.hand_translation_sigma_mm};
+  const MetricNoise assumed{problem.noise().image_px,
+                            options.hand_rotation_sigma_rad,
+                            options.hand_translation_sigma_mm,
+                            {}};
   const HandWeights weights =
       hand_weights(problem.scene(), problem.eyes(), problem.state(), assumed,
                    options.hand_noise == HandNoiseSource::kMeasured);

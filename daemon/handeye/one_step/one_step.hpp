@@ -12,15 +12,16 @@
 
 namespace handeye {
 
-/// The hand at a frame, interpolated between the two samples around it.
+/// The hand at a frame, from the tracker's samples around it.
 struct HandAtFrame {
   Pose room_from_hand{Pose::Identity()};                      ///< mm
   Eigen::Vector3d angular_velocity{Eigen::Vector3d::Zero()};  ///< in the hand frame [rad/s]
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};          ///< of its origin, in the room [mm/s]
-  /// Which two samples: this one of the tracker's stream and the next. Frames that share a sample
-  /// share its error.
+  /// Which samples: this one of the tracker's stream and those that follow it, and by what shares
+  /// their errors are this one's; between two samples 1-a and a. Frames that share a sample share
+  /// its error.
   std::int64_t sample{0};
-  double fraction{0};  ///< 0..1 between them: variance times (1-a)^2 + a^2
+  std::vector<double> shares{1.0};
   /// Of one sample here, as the tracker itself says (6dcov): of (w [rad], dt [mm]) in the room,
   /// R = Exp(w) R_measured, t = t_measured + dt.
   std::optional<Matrix6d> sample_covariance;

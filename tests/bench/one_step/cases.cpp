@@ -35,6 +35,14 @@ std::vector<OneStepCase> one_step_cases() {
   outliers.outlier_samples = 0.05;
   OneStepSceneOptions drifting;
   drifting.tracks.noise_memory_s = 0.4;
+  OneStepSceneOptions bad_tracks;
+  bad_tracks.tracks.bad_tracks = 0.1;
+  OneStepSceneOptions bad_tracks_all = all_keyframes(150, std::nullopt);
+  bad_tracks_all.tracks.bad_tracks = 0.1;
+  OneStepSceneOptions smooth;
+  smooth.smooth_hands = true;
+  OneStepSceneOptions smooth_all = all_keyframes(150, std::nullopt);
+  smooth_all.smooth_hands = true;
   OneStepSceneOptions parts;
   parts.tracks.parts = 3;
   parts.tracks.frames = 180;
@@ -51,6 +59,10 @@ std::vector<OneStepCase> one_step_cases() {
       {"slow-tracker", slow_tracker, HandNoiseSource::kEstimated, 10},
       {"outliers", outliers},
       {"drifting-tracks", drifting},
+      {"bad-tracks", bad_tracks},
+      {"150-keyframes-bad-tracks", bad_tracks_all},
+      {"smooth", smooth},
+      {"150-keyframes-smooth", smooth_all},
       {"parts", parts},
       {"varying-given", varying, HandNoiseSource::kGiven},
       {"varying-estimated", varying, HandNoiseSource::kEstimated},

@@ -71,6 +71,30 @@ TEST(OneStepBoundVariants, GrossOutliersOfTheTracker) {
   EXPECT_LT(found.one_step.rms_translation_mm(), 1.4 * clean.one_step.rms_translation_mm());
 }
 
+/// A tenth of the tracks six times as noisy costs next to nothing: they are weighed by what they
+/// show. The bound is of all tracks alike.
+TEST(OneStepBoundVariants, BadTracks) {
+  OneStepSceneOptions options;
+  options.keyframe_interval = 1;
+  options.tracks.bad_tracks = 0.1;
+  const OneStepStudy found = study("a tenth bad tracks", options);
+  expect_honest(found.one_step);
+  EXPECT_LT(found.one_step.rotation_to_bound(), 1.25);
+  EXPECT_LT(found.one_step.translation_to_bound(), 1.25);
+}
+
+/// All samples of the tracker instead of the two around each frame.
+TEST(OneStepBoundVariants, SmoothHands) {
+  OneStepSceneOptions options;
+  options.keyframe_interval = 1;
+  const OneStepStudy line = study("hands on a line", options);
+  options.smooth_hands = true;
+  const OneStepStudy smooth = study("smooth hands", options);
+  expect_honest(smooth.one_step);
+  EXPECT_LT(smooth.one_step.rms_rotation_deg(), 0.97 * line.one_step.rms_rotation_deg());
+  EXPECT_LT(smooth.one_step.rms_translation_mm(), 0.97 * line.one_step.rms_translation_mm());
+}
+
 /// What the tracker says of each sample is worth more than one figure for all.
 TEST(OneStepBoundVariants, MeasuredNoiseBeatsGivenNoise) {
   OneStepSceneOptions options;

@@ -178,8 +178,9 @@ class Information {
   Eigen::MatrixXd covariance(const std::vector<int>& chain) const {
     const auto part_of_sample = [&](int frame, std::int64_t sample) {
       const HandAtFrame& hand = *scene_.problem.frames[static_cast<std::size_t>(frame)].hand;
-      if (sample == hand.sample) return 1 - hand.fraction;
-      return sample == hand.sample + 1 ? hand.fraction : 0.0;
+      const std::int64_t at = sample - hand.sample;
+      const bool has = at >= 0 && at < static_cast<std::int64_t>(hand.shares.size());
+      return has ? hand.shares[static_cast<std::size_t>(at)] : 0.0;
     };
     const auto size = static_cast<Eigen::Index>(6 * chain.size());
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);

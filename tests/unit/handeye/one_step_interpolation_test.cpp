@@ -44,12 +44,12 @@ TEST(OneStepInterpolation, LowersTheNoiseAndCorrelatesNeighbours) {
     for (Eigen::Index k = 0; k + 1 < errors.cols(); ++k) {
       const HandAtFrame& a = *scene.problem.frames[static_cast<std::size_t>(k)].hand;
       const HandAtFrame& b = *scene.problem.frames[static_cast<std::size_t>(k) + 1].hand;
-      const double f = a.fraction;
-      chi2 += errors.col(k).squaredNorm() / ((1 - f) * (1 - f) + f * f);
+      const double f = a.shares[1];
+      chi2 += errors.col(k).squaredNorm() / (a.shares[0] * a.shares[0] + f * f);
       product += errors.col(k).dot(errors.col(k + 1));
       // Half a sample apart: the same two, or one in common.
-      expected_product += 3 * (a.sample == b.sample ? (1 - f) * (1 - b.fraction) + f * b.fraction
-                                                    : f * (1 - b.fraction));
+      expected_product += 3 * (a.sample == b.sample ? a.shares[0] * b.shares[0] + f * b.shares[1]
+                                                    : f * b.shares[0]);
       count += 3;
     }
   }

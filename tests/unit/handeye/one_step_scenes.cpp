@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "daemon/sync/hand_smoothing.hpp"
 #include "tests/unit/handeye/one_step_structure.hpp"
 
 namespace handeye::synthetic {
@@ -66,6 +67,15 @@ HandSample sample(const OneStepSceneOptions& options, const Pose& room_from_hand
   return result;
 }
 
+HandAtFrame hand_of(const SmoothedHand& found) {
+  return {.room_from_hand = found.room_from_hand,
+          .angular_velocity = found.angular_velocity,
+          .velocity = found.velocity,
+          .sample = found.sample,
+          .shares = found.shares,
+          .sample_covariance = found.sample_covariance};
+}
+
 /// Fills the scene's samples, and the hand of every frame by looking it up as the daemon does, at a
 /// time offset of zero.
 void add_hands(Noise& noise, OneStepScene& scene) {
@@ -82,15 +92,21 @@ void add_hands(Noise& noise, OneStepScene& scene) {
     buffer.push(sample(options, options.tracks.motion(true_s) * eye_from_hand,
                        scene.sample_covariance.back(), time_s, noise));
   }
+  std::optional<HandSmoothing> smoothing;
+  if (options.smooth_hands) smoothing.emplace(buffer);
   for (std::size_t k = 0; k < scene.problem.frames.size(); ++k) {
-    const HandLookup found =
-        buffer.lookup(nanoseconds(static_cast<double>(k) / options.tracks.rate_hz));
+    const std::int64_t time_ns = nanoseconds(static_cast<double>(k) / options.tracks.rate_hz);
+    if (smoothing) {
+      if (auto found = smoothing->at(time_ns)) scene.problem.frames[k].hand = hand_of(*found);
+      continue;
+    }
+    const HandLookup found = buffer.lookup(time_ns);
     if (found.status != LookupStatus::kOk) continue;
     scene.problem.frames[k].hand = HandAtFrame{.room_from_hand = found.room_from_hand,
                                                .angular_velocity = found.angular_velocity,
                                                .velocity = found.velocity,
                                                .sample = found.sample,
-                                               .fraction = found.fraction,
+                                               .shares = {1 - found.fraction, found.fraction},
                                                .sample_covariance = found.sample_covariance};
   }
 }

@@ -17,6 +17,7 @@ struct OneStepSceneOptions {
   int keyframe_interval{4};            ///< every so many frames one
   std::optional<IntrinsicsMode> lens;  ///< adjusted, with such a prior; nothing: the true one given
   double tracker_hz{60};
+  bool smooth_hands{false};  ///< over the samples around a frame; else the line between two
   double hand_rotation_sigma_rad{rad_from_deg(0.1)};  ///< of a sample, per axis
   double hand_translation_sigma_mm{0.2};              ///< likewise
   /// The noise changes over time and is larger along one axis, as the samples' covariance says; the

@@ -42,7 +42,8 @@ Eigen::Vector3d visible_point(const CameraModel& camera, const Pose& eye_from_ro
 /// A feature while it is being tracked.
 struct Live {
   Track track;
-  Eigen::Vector2d error{Eigen::Vector2d::Zero()};
+  Eigen::Vector2d error{Eigen::Vector2d::Zero()};  ///< in its noise
+  double noise_px{0};
 };
 
 class Tracker {
@@ -87,6 +88,8 @@ class Tracker {
       fresh.track.part = part;
       fresh.track.first = frame;
       fresh.error = normal2();
+      const bool bad = options_.bad_tracks > 0 && chance(generator_) < options_.bad_tracks;
+      fresh.noise_px = bad ? options_.bad_noise_px : options_.noise_px;
       live_.push_back(std::move(fresh));
     }
     const double kept = options_.noise_memory_s > 0
@@ -96,7 +99,7 @@ class Tracker {
       live.error = kept * live.error + std::sqrt(1 - kept * kept) * normal2();
       live.track.pixels.emplace_back(
           project<double>(result_.camera, Eigen::Vector3d(eye_from_room * live.track.point_room)) +
-          options_.noise_px * live.error);
+          live.noise_px * live.error);
     }
   }
 

@@ -21,7 +21,9 @@ struct TrackOptions {
   /// Time in which a track's error forgets itself (its variance stays that of the noise); 0: at
   /// once.
   double noise_memory_s{0};
-  int parts{1};  ///< of equal length; no track outlasts its part
+  double bad_tracks{0};    ///< share of tracks that are worse,
+  double bad_noise_px{3};  ///< by so much, per axis
+  int parts{1};            ///< of equal length; no track outlasts its part
   Motion motion{free_hand};
   double from_s{0};  ///< time of the motion at the first frame
 };

@@ -67,23 +67,29 @@ double OneStepFigures::rms_offset_s() const {
   return std::sqrt(offset_square_ / trials_);
 }
 
+double OneStepFigures::claimed_offset_s() const {
+  return std::sqrt(claimed_offset_square_ / trials_);
+}
+
 double OneStepFigures::offset_bias() const {
   return std::abs(mean_offset_s()) / (rms_offset_s() / std::sqrt(trials_));
 }
 
 std::string header() {
-  return fmt::format("{:<34} {:>7} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>5} {:>5}\n",
-                     "", "rot deg", "/bound", "/claim", "trans mm", "/bound", "/claim", "NEES",
-                     "dt ms", "rms ms", "worst", "fails");
+  return fmt::format(
+      "{:<34} {:>7} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>6} {:>5} {:>5}\n", "",
+      "rot deg", "/bound", "/claim", "trans mm", "/bound", "/claim", "NEES", "dt ms", "rms ms",
+      "/claim", "worst", "fails");
 }
 
 std::string row(const OneStepFigures& f) {
   return fmt::format(
-      "{:7.4f} {:6.3f} {:6.3f} {:8.4f} {:6.3f} {:6.3f} {:6.2f} {:7.3f} {:7.3f} {:5.1f} {:5}",
+      "{:7.4f} {:6.3f} {:6.3f} {:8.4f} {:6.3f} {:6.3f} {:6.2f} {:7.3f} {:7.3f} {:6.3f} {:5.1f} "
+      "{:5}",
       f.rms_rotation_deg(), f.rotation_to_bound(), f.rms_rotation_deg() / f.claimed_rotation_deg(),
       f.rms_translation_mm(), f.translation_to_bound(),
       f.rms_translation_mm() / f.claimed_translation_mm(), f.mean_nees(), 1e3 * f.mean_offset_s(),
-      1e3 * f.rms_offset_s(), f.worst(), f.failures());
+      1e3 * f.rms_offset_s(), f.rms_offset_s() / f.claimed_offset_s(), f.worst(), f.failures());
 }
 
 NeesBand nees_band(int trials) {

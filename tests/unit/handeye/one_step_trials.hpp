@@ -30,6 +30,7 @@ class OneStepFigures {
   double mean_nees() const;  ///< of 6 degrees of freedom
   double mean_offset_s() const;
   double rms_offset_s() const;
+  double claimed_offset_s() const;  ///< rms
   /// Mean offset error in its standard deviations of chance.
   double offset_bias() const;
   /// Largest error in its own standard deviations, of rotation or translation.

@@ -74,9 +74,10 @@ std::optional<OneStepEstimate> estimate_in_one_step(const Reconstruction& recons
   const Stopwatch stopwatch;
   OneStepEstimate estimate{.time_offset_s = start.time_offset_s, .hand_noise = hand_noise};
   estimate.start = *start.likelihood;
+  const HandSmoothing smoothed = smoothed_for(reconstruction.frames, hand);
   bool settled = false;
   for (int round = 0; round < kMostRounds && !settled; ++round) {
-    estimate.problem = one_step_problem(reconstruction, hand, estimate.time_offset_s);
+    estimate.problem = one_step_problem(reconstruction, smoothed, estimate.time_offset_s);
     const OneStepProblem& problem = estimate.problem;
     if (estimate.hand_noise == HandNoiseSource::kMeasured && !is_measured(problem)) {
       estimate.hand_noise = HandNoiseSource::kEstimated;

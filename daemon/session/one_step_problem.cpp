@@ -55,11 +55,14 @@ OneStepPoint to_point(const ScenePoint& point) {
 
 }  // namespace
 
-OneStepProblem one_step_problem(const Reconstruction& reconstruction, const PoseBuffer& hand,
+HandSmoothing smoothed_for(const std::vector<RegisteredFrame>& frames, const PoseBuffer& hand) {
+  return HandSmoothing(hand, {.reach_ns = reach_ns(frames)});
+}
+
+OneStepProblem one_step_problem(const Reconstruction& reconstruction, const HandSmoothing& hand,
                                 double time_offset_s) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
   OneStepProblem problem{.camera = reconstruction.lens.camera};
-  const HandSmoothing smoothing(hand, {.reach_ns = reach_ns(reconstruction.frames)});
   problem.frames.reserve(reconstruction.frames.size());
   for (const RegisteredFrame& frame : reconstruction.frames) {
     OneStepFrame& one =
@@ -67,8 +70,7 @@ OneStepProblem one_step_problem(const Reconstruction& reconstruction, const Pose
                                                  .part = frame.part,
                                                  .keyframe = frame.keyframe,
                                                  .unit_covariance = frame.unit_covariance});
-    if (is_placed_by_what_it_saw(frame))
-      one.hand = hand_at(frame.timestamp_ns - offset_ns, smoothing);
+    if (is_placed_by_what_it_saw(frame)) one.hand = hand_at(frame.timestamp_ns - offset_ns, hand);
   }
   problem.points.reserve(reconstruction.structure.size());
   for (const ScenePoint& point : reconstruction.structure) {

@@ -46,7 +46,8 @@ Estimate estimate_of(const CalibrationSnapshot& snapshot) {
 TEST(OneStepProblem, HasEveryFrameAndPointAndTheHandAtItsTime) {
   const CalibrationSnapshot snapshot = snapshot_of(1, HandNoiseSource::kMeasured);
   const Reconstruction& seen = snapshot.reconstruction;
-  const OneStepProblem problem = one_step_problem(seen, snapshot.hand, tracked::kTimeOffset_s);
+  const OneStepProblem problem =
+      one_step_problem(seen, smoothed_for(seen.frames, snapshot.hand), tracked::kTimeOffset_s);
   ASSERT_EQ(problem.frames.size(), seen.frames.size());
   ASSERT_EQ(problem.points.size(), seen.structure.size());
   EXPECT_EQ(problem.camera.fx, tracked::kCamera.fx);
@@ -73,8 +74,9 @@ TEST(OneStepProblem, LetsNoFrameCountOfWhichNothingIsKnown) {
   const auto between = std::ranges::find(frames, false, &RegisteredFrame::keyframe);
   ASSERT_NE(between, frames.end());
   between->unit_covariance.setZero();
-  const OneStepProblem problem =
-      one_step_problem(snapshot.reconstruction, snapshot.hand, tracked::kTimeOffset_s);
+  const OneStepProblem problem = one_step_problem(
+      snapshot.reconstruction, smoothed_for(snapshot.reconstruction.frames, snapshot.hand),
+      tracked::kTimeOffset_s);
   EXPECT_FALSE(problem.frames[static_cast<std::size_t>(between - frames.begin())].hand);
 }
 

@@ -132,18 +132,6 @@ std::optional<WatchFit> CalibrationWatch::fit_newest() {
   return newest;
 }
 
-/// The same from the fewest of the newest frames that contradict, too: frames of before the turn
-/// among them would make it look smaller.
-WatchFit CalibrationWatch::sharpened(const WatchFit& contradicting) const {
-  const std::span<const WatchFrame> all(window_);
-  for (const std::size_t count : {options_.short_frames, options_.middle_frames}) {
-    if (count >= all.size()) continue;
-    const auto newest = fit(all.last(count));
-    if (newest && contradicts(*newest)) return *newest;
-  }
-  return contradicting;
-}
-
 bool CalibrationWatch::contradicts(const WatchFit& fit) const {
   return judge(fit).kind == WatchEvidence::Kind::kContradicts;
 }
@@ -159,7 +147,6 @@ WatchEvidence CalibrationWatch::examine() {
     const std::optional<WatchFit> newest = fit_newest();
     if (newest && (contradicts(*newest) || !explains(*found))) found = newest;
   }
-  if (suspicious && contradicts(*found)) found = sharpened(*found);
   if (!found) return {};
   failed_looks_ = explains(*found) ? 0 : failed_looks_ + 1;
   WatchEvidence evidence = judge(*found);

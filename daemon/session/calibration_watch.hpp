@@ -90,7 +90,6 @@ class CalibrationWatch {
   bool is_look_due() const;
   std::optional<WatchFit> fit(std::span<const WatchFrame> frames) const;
   std::optional<WatchFit> fit_newest();
-  WatchFit sharpened(const WatchFit& contradicting) const;
   bool contradicts(const WatchFit& fit) const;
   WatchEvidence judge(const WatchFit& fit) const;
   WatchEvidence examine();

@@ -101,7 +101,18 @@ TEST_F(WatchThreadTest, TellsEveryChangeOfTheCalibrationInUse) {
   EXPECT_EQ(words(), expected);
   const WatchStatus status = watch_.status(monotonic_ns());
   EXPECT_EQ(status.state, WatchState::kBroken);
-  EXPECT_NEAR(status.deviation_deg, 5, 2);
+  EXPECT_GT(status.deviation_deg, 1);
+}
+
+/// At first frames of before the turn are among those looked at, and make it look smaller.
+TEST_F(WatchThreadTest, TellsHowFarOnceTheTurnIsPast) {
+  begin(7);
+  ASSERT_TRUE(feed_until_told(7, WatchState::kBroken));
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto off_deg = [&] { return std::abs(watch_.status(monotonic_ns()).deviation_deg - 5); };
+  while (off_deg() > 0.5 && std::chrono::steady_clock::now() < deadline) feed_frame();
+  EXPECT_LT(off_deg(), 0.5);
+  EXPECT_EQ(watch_.status(monotonic_ns()).state, WatchState::kBroken);
 }
 
 TEST_F(WatchThreadTest, NeverTellsOfACalibrationThatIsNoLongerInUse) {

@@ -5,10 +5,9 @@
 // [SECONDS [FIRST_SEED]]] (default 10, 20, 1). Marks answers that are worse than the best of the
 // seed's five methods by more than their own sigma, and says how many chance alone makes of the
 // best possible answers. Beside them, what the tracker's noise makes of the answer to perfect
-// pictures: where that, too, is worse than the best of the five by more than its own sigma, no
-// program is expected to be better. Ends with 1 where an accepted answer is beyond 3.5 of its own
-// sigmas, where the answers' rms is not below that of every one of the five, or where an answer is
-// marked on a sequence on which perfect pictures' is not.
+// pictures, with the same mark by that answer's own, smaller sigma. Ends with 1 where an accepted
+// answer is beyond 3.5 of its own sigmas, where the answers' rms is not below that of every one of
+// the five, or where an answer is marked.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -185,7 +184,7 @@ bool Table::is_below_the_five() const {
 }
 
 bool Table::holds() const {
-  return estimates_ > 0 && dishonest_ == 0 && worse_ == worse_in_vain_ && is_below_the_five();
+  return estimates_ > 0 && dishonest_ == 0 && worse_ == 0 && is_below_the_five();
 }
 
 void Table::print_end() const {

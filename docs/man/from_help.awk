@@ -5,6 +5,9 @@ function escaped(text) {
   gsub(/\\/, "\\e", text)
   gsub(/-/, "\\-", text)
   sub(/^['.]/, "\\\\\\&&", text)
+  # Where long words may be broken: chessboard:COLSxROWS:SQUARE_MM, hand_qw,hand_qx,hand_qy
+  gsub(/:[A-Z]/, "\\:&", text)
+  while (match(text, /,[a-z]/)) text = substr(text, 1, RSTART) "\\:" substr(text, RSTART + 1)
   return text
 }
 # CLI11 writes "--body N:INT in [0 - 999]", "--eye TEXT:{sfm,pattern}=sfm"; a manual "--body N (0 to 999)", "--eye sfm|pattern".

@@ -37,7 +37,7 @@ function item(spec, text) {
   print ".B " escaped(as_in_a_manual(spec))
   if (text != "") print escaped(text)
 }
-BEGIN { if (title != "") print ".SS " escaped(title) }
+BEGIN { print ".ad l"; if (title != "") print ".SS " escaped(title) }
 /^[[:space:]]*$/ { next }
 !described && !/^Usage:/ { described = 1; if (title != "") print escaped($0); next }
 /^Usage:/ { described = 1; print ".PP"; print ".B " escaped(substr($0, 8)); next }

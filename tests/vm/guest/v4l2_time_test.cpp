@@ -2,6 +2,7 @@
 // Time stamps and sequence numbers of a real kernel.
 #include <linux/videodev2.h>
 #include <sys/resource.h>
+#include <vector>
 
 #include "tests/vm/guest/raw_stamp.hpp"
 #include "tests/vm/guest/vivid_fixture.hpp"
@@ -19,6 +20,18 @@ class V4l2Time : public VividTest {
   }
 
   static std::uint32_t kind_of_stamp() { return raw_stamp().flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK; }
+
+  /// How many numbers lie between those of frames that follow each other. None where vivid gives
+  /// two frames the same number: it counts periods by the kernel's ticks, and may wake up a tick
+  /// early.
+  static std::uint64_t missing_in(const std::vector<Frame>& frames) {
+    std::uint64_t missing = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      const std::uint32_t step = frames[i].sequence - frames[i - 1].sequence;
+      if (step > 0) missing += step - 1;
+    }
+    return missing;
+  }
 
   static double processor_s() {
     rusage usage{};
@@ -73,12 +86,8 @@ TEST_F(V4l2Time, CountsEveryDroppedFrame) {
   ASSERT_EQ(opened(), "opened");
   const std::vector<Frame> frames = grab_frames(60);
   ASSERT_EQ(frames.size(), 60U);
-  std::uint64_t missing = 0;
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    missing += frames[i].sequence - frames[i - 1].sequence - 1;
-  }
-  EXPECT_GT(missing, 3U);
-  EXPECT_EQ(camera_->counters().dropped, missing);
+  EXPECT_GT(missing_in(frames), 3U);
+  EXPECT_EQ(camera_->counters().dropped, missing_in(frames));
   EXPECT_EQ(camera_->counters().malformed, 0U);
   EXPECT_EQ(camera_->counters().received, 60U);
 }
@@ -91,8 +100,8 @@ TEST_F(V4l2Time, GoesOnWhereTheSequenceWraps) {
   ASSERT_EQ(frames.size(), 150U);
   EXPECT_GT(frames.front().sequence, 0xFFFF'FF00U);
   EXPECT_LT(frames.back().sequence, 0x100U);
-  const std::uint64_t missing = frames.back().sequence - frames.front().sequence - 149U;
-  EXPECT_EQ(camera_->counters().dropped, missing);
+  EXPECT_LT(missing_in(frames), 150U);
+  EXPECT_EQ(camera_->counters().dropped, missing_in(frames));
 }
 
 TEST_F(V4l2Time, SpentWaitingCostsNoProcessorTime) {

@@ -18,6 +18,11 @@ constexpr std::array kWords{Word{IntrinsicsMode::kFixed, "fixed"},
 
 }  // namespace
 
+std::optional<CameraModel> known_lens(const CameraModel& camera, IntrinsicsMode mode) {
+  if (mode == IntrinsicsMode::kEstimate) return std::nullopt;
+  return camera;
+}
+
 std::string_view intrinsics_word(IntrinsicsMode mode) {
   return std::ranges::find(kWords, mode, &Word::mode)->word;
 }

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include "daemon/geometry/camera_model.hpp"
+
 namespace handeye {
 
 /// What a calibration does about the lens.
@@ -12,6 +14,9 @@ enum class IntrinsicsMode {
   kRefine,    ///< starts as given; f, c, k1, k2 are free in the final adjustment
   kEstimate,  ///< nothing is known but the size of the image
 };
+
+/// The lens as far as it is known before the first image; nothing where it is to be estimated.
+std::optional<CameraModel> known_lens(const CameraModel& camera, IntrinsicsMode mode);
 
 /// "fixed", "refine", "estimate".
 std::string_view intrinsics_word(IntrinsicsMode mode);

@@ -215,7 +215,7 @@ void Service::use(const CalibrationResult& result) {
   in_use_ = active_calibration(result, config_.tracker, monotonic_ns());
   tracker_.use(*in_use_);
   watch_.watch(result.request_id, watched_calibration(result, config_.tracker));
-  vision_.begin_watching();
+  vision_.begin_watching(result.camera);
 }
 
 void Service::keep(const CalibrationResult& result) {

@@ -32,6 +32,7 @@ VisionThread::Options vision_options(const Config& config, const CameraFiles& fi
                                      const Channels& channels) {
   VisionThread::Options options;
   options.mask = files.mask;
+  options.lens = known_lens(files.model, config.camera.intrinsics_mode);
   // A camera on LCM is on FRAME already; never publish there beside it.
   if (config.camera.driver != Config::Camera::Driver::kLcm) options.frame_channel = channels.frame;
   return options;

@@ -51,13 +51,21 @@ void VisionThread::start() {
 
 std::uint64_t VisionThread::begin_collecting(const std::optional<Board>& board) {
   {
-    const std::scoped_lock lock(board_mutex_);
+    const std::scoped_lock lock(begin_mutex_);
     board_ = board;
   }
   frames_collected_ = 0;
   features_tracked_ = 0;
   collecting_ = ++last_calibration_;
   return last_calibration_;
+}
+
+void VisionThread::begin_watching(const CameraModel& lens) {
+  {
+    const std::scoped_lock lock(begin_mutex_);
+    watched_lens_ = lens;
+  }
+  watching_ = true;
 }
 
 void VisionThread::run(const std::stop_token& stop) {
@@ -92,7 +100,8 @@ bool VisionThread::is_watch_due(const Frame& frame) const {
 
 ImageCondition VisionThread::track_for_watch(const Frame& frame) {
   if (!watch_stage_) {
-    watch_stage_ = make_image_stage({}, options_.mask.clone());
+    const std::scoped_lock lock(begin_mutex_);
+    watch_stage_ = make_image_stage({}, options_.mask.clone(), watched_lens_);
     ++watch_tracking_;
   }
   const std::int64_t before_ns = processor_time_ns();
@@ -129,8 +138,8 @@ void VisionThread::report_picture() {
 }
 
 void VisionThread::begin_stage(std::uint64_t calibration) {
-  const std::scoped_lock lock(board_mutex_);
-  stage_ = make_image_stage(board_, options_.mask.clone());
+  const std::scoped_lock lock(begin_mutex_);
+  stage_ = make_image_stage(board_, options_.mask.clone(), options_.lens);
   staged_calibration_ = calibration;
   health_ = {};
   missed_descriptions_.clear();

@@ -35,7 +35,8 @@ struct TrackedItem {
 class VisionThread {
  public:
   struct Options {
-    cv::Mat mask;  ///< empty: found in the images
+    cv::Mat mask;                     ///< empty: found in the images
+    std::optional<CameraModel> lens;  ///< where it is known before a calibration
     std::optional<std::string>
         frame_channel;  ///< where to publish frames while recording; none: never
     /// Waiting for the solver, which may be busy for many seconds: 17 s of a 60 Hz camera. Feature
@@ -51,8 +52,9 @@ class VisionThread {
   /// that the TrackedItems of this calibration will carry.
   std::uint64_t begin_collecting(const std::optional<Board>& board);
   void end_collecting() { collecting_ = 0; }
-  /// From the main thread: while nothing is collected, track for the watch.
-  void begin_watching() { watching_ = true; }
+  /// From the main thread: while nothing is collected, track for the watch over a calibration that
+  /// used or found this lens.
+  void begin_watching(const CameraModel& lens);
   void record_until(std::int64_t monotonic_ns) { record_until_ns_ = monotonic_ns; }
 
   /// The solver's end of the tracked frames.
@@ -97,8 +99,9 @@ class VisionThread {
   TrackedFrame watch_overflow_;
 
   std::uint64_t last_calibration_{0};
-  std::mutex board_mutex_;  ///< taken once per calibration
+  std::mutex begin_mutex_;  ///< taken when a calibration, or the watch over it, begins
   std::optional<Board> board_;
+  std::optional<CameraModel> watched_lens_;
   std::atomic<std::uint64_t> collecting_{0};  ///< the running calibration's number; 0: none
   std::atomic<bool> watching_{false};
   std::atomic<std::int64_t> record_until_ns_{0};

@@ -44,9 +44,10 @@ void ImageStage::fail(std::string what, TrackedFrame& tracked) {
   tracked.descriptions.clear();
 }
 
-std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask) {
+std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask,
+                                             const std::optional<CameraModel>& lens) {
   if (board) return std::make_unique<BoardStage>(*board);
-  return std::make_unique<TrackingStage>(std::move(mask));
+  return std::make_unique<TrackingStage>(std::move(mask), lens);
 }
 
 }  // namespace handeye

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "daemon/geometry/board.hpp"
+#include "daemon/geometry/camera_model.hpp"
 #include "daemon/tracking/feature_tracker.hpp"
 #include "daemon/tracking/fields.hpp"
 #include "daemon/tracking/image_inspector.hpp"
@@ -53,7 +54,9 @@ class ImageStage {
 };
 
 /// Features of whatever is in view, or, given a board, its corners. `mask`: CV_8UC1, 255 = usable;
-/// empty: it is found in the images, all along. A board needs none.
-std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask);
+/// empty: it is found in the images, all along. A board needs none. `lens`: of the images, where it
+/// is known beforehand.
+std::unique_ptr<ImageStage> make_image_stage(const std::optional<Board>& board, cv::Mat mask,
+                                             const std::optional<CameraModel>& lens = {});
 
 }  // namespace handeye

@@ -115,7 +115,8 @@ CalibrationResult replay(const ReplayOptions& options) {
   const Stopwatch stopwatch;
   Recording recording = open_recording(options.recording);
   const CameraModel camera = camera_for(recording, options);
-  const auto images = make_image_stage(options.board, mask_for(recording, options, camera));
+  const auto images = make_image_stage(options.board, mask_for(recording, options, camera),
+                                       known_lens(camera, options.intrinsics));
   RecordedHand hand(recording.datagrams, options.body_id);
   Calibration calibration(calibration_options(options, camera, recording.datagrams.size()));
 

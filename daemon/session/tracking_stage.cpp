@@ -5,8 +5,8 @@
 
 namespace handeye {
 
-TrackingStage::TrackingStage(cv::Mat mask)
-    : field_of_view_(std::move(mask)), tracker_(make_feature_tracker()) {}
+TrackingStage::TrackingStage(cv::Mat mask, const std::optional<CameraModel>& lens)
+    : field_of_view_(std::move(mask)), tracker_(make_feature_tracker({.lens = lens})) {}
 
 void TrackingStage::look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) {
   const cv::Mat& field = field_of_view_.look(grey);

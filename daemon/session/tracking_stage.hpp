@@ -13,8 +13,8 @@ namespace handeye {
 /// the rest.
 class TrackingStage final : public ImageStage {
  public:
-  /// `mask`: CV_8UC1, 255 = usable; empty: it is found in the images.
-  explicit TrackingStage(cv::Mat mask);
+  /// `mask`: CV_8UC1, 255 = usable; empty: it is found in the images. `lens`: where it is known.
+  explicit TrackingStage(cv::Mat mask, const std::optional<CameraModel>& lens = {});
 
  private:
   void look(const cv::Mat& grey, std::int64_t timestamp_ns, TrackedFrame& tracked) override;

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "daemon/geometry/camera_model.hpp"
 #include "daemon/tracking/image_condition.hpp"
 
 namespace handeye {
@@ -44,6 +46,9 @@ struct TrackerOptions {
   double min_distance_px{10};  ///< between features when new ones are sought, in the given image
   double quality{0.01};        ///< weakest corner accepted, of the strongest in the image
   int threads{2};              ///< to track with, at least 1; the results do not depend on it
+  /// Of the given images, where it is known: its bending of the windows is then counted
+  /// (bent_window.hpp). One of another size is not used.
+  std::optional<CameraModel> lens{};
 };
 
 /// Follows features from frame to frame. One thread; frames in order of time.

@@ -61,6 +61,9 @@ class IlluminationTracker final : public FeatureTracker {
     halvings_ = 0;
     while ((grey.cols >> halvings_) > kWidestPx) ++halvings_;
     now_.build(grey, mask, halvings_, options_.pyramid_levels + 1);
+    const auto& lens = options_.lens;
+    const bool fits = lens && lens->width == grey.cols && lens->height == grey.rows;
+    lens_ = fits ? std::optional(halved(*lens, halvings_)) : std::nullopt;
   }
 
   /// Where each feature should be: constant velocity, or as the image as a whole moved.
@@ -115,7 +118,12 @@ class IlluminationTracker final : public FeatureTracker {
     if (!good) return;
     tracks_.warp[i] = warp;
     tracks_.fit[i] = fit;
-    tracks_.pixel[i] = warp * tracks_.anchor[i];
+    tracks_.pixel[i] = warp * tracks_.anchor[i] - bend(i, warp);
+  }
+
+  Eigen::Vector2f bend(std::size_t i, const AffineWarp& warp) const {
+    if (!tracks_.rays[i]) return Eigen::Vector2f::Zero();
+    return bend_px(*lens_, *tracks_.rays[i], warp).cast<float>();
   }
 
   bool is_usable(const Eigen::Vector2f& pixel) const {
@@ -171,6 +179,7 @@ class IlluminationTracker final : public FeatureTracker {
     }
     tracks_.warp[i] = {{static_cast<float>(x), static_cast<float>(y)}, Eigen::Matrix2f::Identity()};
     tracks_.anchor[i] = tracks_.pixel[i] - tracks_.warp[i].centre;
+    if (lens_) tracks_.rays[i] = window_rays(*lens_, tracks_.warp[i].centre.cast<double>());
     return true;
   }
 
@@ -205,6 +214,7 @@ class IlluminationTracker final : public FeatureTracker {
   CornerSupply supply_;
   FeatureDescriber describer_;
   int halvings_{0};
+  std::optional<CameraModel> lens_;  ///< of the working size
   std::int64_t frames_{0};
   std::int64_t next_id_{0};
   std::int64_t last_ns_{0};

@@ -24,6 +24,7 @@ TrackTable::TrackTable(std::size_t capacity) : capacity_(capacity), appearances_
   strength.reserve(capacity);
   warp.reserve(capacity);
   anchor.reserve(capacity);
+  rays.reserve(capacity);
   fit.reserve(capacity);
   lost.reserve(capacity);
   slot_.reserve(capacity);
@@ -40,6 +41,7 @@ void TrackTable::add(std::int64_t feature_id, const Eigen::Vector2f& position,
   strength.push_back(corner_strength);
   warp.push_back({position, Eigen::Matrix2f::Identity()});
   anchor.emplace_back(Eigen::Vector2f::Zero());
+  rays.emplace_back();
   fit.push_back({.found = true, .correlation = 1});
   lost.push_back(0);
   slot_.push_back(free_slots_.back());
@@ -57,6 +59,7 @@ void TrackTable::drop_lost() {
   compact(strength, lost);
   compact(warp, lost);
   compact(anchor, lost);
+  compact(rays, lost);
   compact(fit, lost);
   compact(slot_, lost);
   lost.assign(id.size(), 0);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "daemon/tracking/bent_window.hpp"
 #include "daemon/tracking/patch_alignment.hpp"
 
 namespace handeye {
@@ -31,12 +33,13 @@ class TrackTable {
 
   std::vector<std::int64_t> id;
   std::vector<Eigen::Vector2f> pixel;
-  std::vector<Eigen::Vector2f> velocity;  ///< px per second, of the last movement
-  std::vector<int> age;                   ///< frames since it was found
-  std::vector<float> strength;            ///< as a corner, when it was found
-  std::vector<AffineWarp> warp;           ///< the appearance's patch in the last image
-  std::vector<Eigen::Vector2f> anchor;    ///< the feature in the appearance's patch [px]
-  std::vector<PatchFit> fit;              ///< with the appearance, in the last image
+  std::vector<Eigen::Vector2f> velocity;        ///< px per second, of the last movement
+  std::vector<int> age;                         ///< frames since it was found
+  std::vector<float> strength;                  ///< as a corner, when it was found
+  std::vector<AffineWarp> warp;                 ///< the appearance's patch in the last image
+  std::vector<Eigen::Vector2f> anchor;          ///< the feature in the appearance's patch [px]
+  std::vector<std::optional<WindowRays>> rays;  ///< of the appearance; none: the lens is not known
+  std::vector<PatchFit> fit;                    ///< with the appearance, in the last image
   std::vector<std::uint8_t> lost;
 
  private:

@@ -228,7 +228,9 @@ int main(int argc, char** argv) {
   Table given("given");
   Table estimated("estimated");
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-    const simulator::World world({.seed = seed}, 1'000'000'000'000);
+    simulator::SimulatorOptions options{.seed = seed};
+    if (arguments.size() > 3) options.lens = {std::stod(arguments[3]), 0.0};
+    const simulator::World world(options, 1'000'000'000'000);
     simulator::record(world, duration_s, recording);
     const auto perfect = answer_of_perfect_camera(world, recording);
     given.add(seed, replayed(recording, IntrinsicsMode::kFixed), world, perfect);

@@ -85,7 +85,7 @@ Tracks track(const std::string& name) {
   Tracks tracks;
   tracks.camera = sequence.camera();
   tracks.scene_distance_mm = sequence.scene_distance_mm();
-  const auto images = make_image_stage(std::nullopt, cv::Mat());
+  const auto images = make_image_stage(std::nullopt, cv::Mat(), sequence.camera());
   FirstAppearances first(sequence.camera());
   SequenceFrame drawn;
   Frame frame;

@@ -41,7 +41,8 @@ Reconstruction reconstruct(const std::filesystem::path& folder, IntrinsicsMode i
     throw InputError(fmt::format("{}: has no camera.json", folder.string()));
   }
   if (const auto problem = recording.camera->open()) throw InputError(*problem);
-  const auto images = make_image_stage(std::nullopt, recording.mask);
+  const auto images = make_image_stage(std::nullopt, recording.mask,
+                                       known_lens(*recording.camera_model, intrinsics));
   const auto eye = make_eye_source(std::nullopt, *recording.camera_model, intrinsics, {});
   Frame frame;
   TrackedFrame tracked;

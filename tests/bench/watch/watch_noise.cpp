@@ -63,7 +63,7 @@ void add_window(const World& world, const std::vector<WatchFrame>& frames, Noise
 
 void watch_pictures(const World& world, double duration_s, std::uint32_t every, Noise& noise) {
   EndoscopeView view(world);
-  const auto images = make_image_stage(std::nullopt, {});
+  const auto images = make_image_stage(std::nullopt, {}, world.camera);
   std::vector<WatchFrame> frames;
   Frame frame;
   TrackedFrame tracked;

@@ -146,7 +146,7 @@ TEST_F(Vision, TracksForTheWatchOnlyWhileNothingIsCollected) {
   vision_.start();
   show(20, false);
   EXPECT_TRUE(take_watched().empty()) << "nobody watches";
-  vision_.begin_watching();
+  vision_.begin_watching({});
   show(20, false);
   const std::vector<std::uint64_t> before = take_watched();
   EXPECT_GE(before.size(), 3U);
@@ -166,7 +166,7 @@ TEST_F(Vision, TracksForTheWatchOnlyWhileNothingIsCollected) {
 
 TEST_F(Vision, CollectsEveryFrameThoughTheWatchTakesNone) {
   vision_.start();
-  vision_.begin_watching();
+  vision_.begin_watching({});
   while (vision_.watched().dropped() == 0) show(1, false);
   vision_.begin_collecting({});
   show(30, false);

@@ -72,11 +72,12 @@ std::optional<double> scale_of(int part, const Reconstruction& reconstruction,
 /// What a lens does to a window, seen under the same angle, on its way from the middle of the image
 /// [px]. Where the tracker did not know the lens it is not counted (bent_window.hpp), all features
 /// err alike by it, and no covariance of independent tracks knows: the distortion was off by 5.4 of
-/// its sigmas, the focal length by 3.6, on 20 s through a lens with k1 = -0.3.
-double bend_from_middle_px(const CameraModel& lens, const Eigen::Vector2d& pixel) {
+/// its sigmas, the focal length by 3.6, on 20 s through a lens with k1 = -0.3. Nothing where the
+/// lens does not reach.
+std::optional<double> bend_from_middle_px(const CameraModel& lens, const Eigen::Vector2d& pixel) {
   const auto before = window_rays(lens, {lens.cx, lens.cy});
   const auto now = window_rays(lens, pixel);
-  if (!before || !now) return 0.0;
+  if (!before || !now) return std::nullopt;
   const Eigen::Matrix2d linear = now->pixel_by_ray * before->pixel_by_ray.inverse();
   return bend_px(lens, *before, {pixel.cast<float>(), linear.cast<float>()}).norm();
 }
@@ -161,7 +162,7 @@ LensSigma lens_sigma_of(const OneStepEstimate& estimate, const Reconstruction& r
                    .k2 = std::max(sigma[kK2], of_images.k2),
                    .distortion_px = of_images.distortion_px};
   Eigen::Vector2d outermost_ray = Eigen::Vector2d::Zero();
-  Eigen::Vector2d outermost_px = outermost_ray;
+  double most_bend_px = 0.0;
   for (const ScenePoint& point : reconstruction.structure) {
     for (const ScenePoint::Observation& seen : point.observations) {
       const auto ray = unproject(lens, seen.pixel);
@@ -169,12 +170,14 @@ LensSigma lens_sigma_of(const OneStepEstimate& estimate, const Reconstruction& r
       result.distortion_px =
           std::max(result.distortion_px, distortion_sigma_px(lens, covariance, *ray));
       if (ray->norm() <= outermost_ray.norm()) continue;
+      const auto bend = bend_from_middle_px(lens, seen.pixel);
+      if (!bend) continue;
       outermost_ray = *ray;
-      outermost_px = seen.pixel;
+      most_bend_px = *bend;
     }
   }
-  if (result.distortion_px > 0) {
-    widen_by_bend(lens, bend_from_middle_px(lens, outermost_px), outermost_ray, result);
+  if (result.distortion_px > 0 && most_bend_px > 0) {
+    widen_by_bend(lens, most_bend_px, outermost_ray, result);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/service/thread_role.hpp"
 #include "protocol/bus.hpp"
 
 namespace handeye {
@@ -38,7 +39,10 @@ TrackerStarter::TrackerStarter(const Config::Tracker& config,
       options_(options) {}
 
 void TrackerStarter::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    take_role({.name = "starter"});
+    run(stop);
+  });
 }
 
 void TrackerStarter::run(const std::stop_token& stop) {

@@ -36,6 +36,16 @@ cv::Mat mask_of(cv::Size size, int frame) {
   return mask;
 }
 
+CameraModel lens_of(cv::Size size) {
+  return {.width = size.width,
+          .height = size.height,
+          .fx = 0.9 * size.width,
+          .fy = 0.9 * size.width,
+          .cx = 0.5 * size.width,
+          .cy = 0.5 * size.height,
+          .distortion = {-0.3, 0, 0, 0, 0}};
+}
+
 class TrackerMemory : public testing::TestWithParam<cv::Size> {};
 
 TEST_P(TrackerMemory, IsTakenAtTheStartAndKept) {
@@ -43,7 +53,7 @@ TEST_P(TrackerMemory, IsTakenAtTheStartAndKept) {
   const cv::Size size = GetParam();
   cv::setNumThreads(1);  // OpenCV's own threads would hand out memory whenever they like
   const test::MovingTexture texture(size);
-  const auto tracker = make_feature_tracker({.threads = 2});
+  const auto tracker = make_feature_tracker({.threads = 2, .lens = lens_of(size)});
   TrackedFrame tracked;
   int plain_frames = 0;
   std::size_t features = 0;
